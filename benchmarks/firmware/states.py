@@ -18,6 +18,8 @@ _COM = np.array([0.1, 0.05, -0.05])  # m
 _COEFFICIENT = 0.01  # of friction and the like; drives have no inertia
 _SPREAD = {"q": pi, "dq": 2.0, "ddq": 3.0, "dq_r": 2.0, "ddq_r": 3.0, "input": 1.0}
 
+_STEP = {"dt": 1e-3, "gain": 30.0, "forgetting": 0.99}  # of the functions that watch an arm
+
 
 def standard_parameters(model: Model) -> Array:
     """The same ball for every link, in the order of the model's standard parameters."""
@@ -63,6 +65,10 @@ class Inputs:
                 value = q
             elif a.name == "parameters":
                 value = self.standard if function.name.endswith("_standard") else self.base
+            elif a.name in _STEP:
+                value = np.full(a.size, _STEP[a.name])
+            elif a.length == "N_MONITOR_STATES":
+                value = monitor_state(a.size, rng)
             elif a.name == "q_m":
                 for r in function.ranges:
                     inner = (r.high - r.low) / 1.002  # the range without its margin of a thousandth
@@ -70,6 +76,13 @@ class Inputs:
                     value[r.index] = (r.low + r.high) / 2 + ratio * inner
             result.append(value)
         return result
+
+
+def monitor_state(size: int, rng: np.random.Generator) -> Array:
+    """What a monitor may have accumulated of m parameters: 3 m elements, then half of a matrix."""
+    m = next(m for m in range(size) if 3 * m + m * (m + 1) // 2 == size)
+    root = rng.uniform(-1, 1, (2 * m, m))
+    return np.concatenate([rng.uniform(-1, 1, 3 * m), (root.T @ root)[np.tril_indices(m)]])
 
 
 def _number(factor: float | sp.Expr, model: Model) -> float:

@@ -18,7 +18,7 @@ int {arm}_forward_dynamics{suffix}(const double q[], const double dq[], const do
     {parameters}double out[])
 {{
     double m[{n}][{n}], x[{n}], bias[{n}];
-    int status = {arm}_mass_matrix{suffix}(q, {given}&m[0][0]);
+    {arm}_status_t status = {arm}_mass_matrix{suffix}(q, {given}&m[0][0]);
     status |= {arm}_bias{suffix}(q, dq, {given}bias);
     for (int i = 0; i < {n}; i++)
         x[i] = input[i] - bias[i];

@@ -31,7 +31,8 @@ int controller_step(const float given[], float result[])
     controller_input_t in;
     controller_output_t out;
     float q[JOINTS], dq[JOINTS], ddq[JOINTS], wanted[JOINTS], model[JOINTS] = {0.0f};
-    int status, j;
+    ariane4_status_t status;
+    int j;
 
     memcpy(&in, given, sizeof in);
     memset(&out, 0, sizeof out);
@@ -62,5 +63,5 @@ int controller_step(const float given[], float result[])
     }
     out.status = (float)status;
     memcpy(result, &out, sizeof out);
-    return status;
+    return (int)status;
 }

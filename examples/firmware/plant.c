@@ -9,14 +9,14 @@ int plant_advance(double q[], double dq[], const double current[], const double 
     double ddq[ARIANE4_N_JOINTS];
     int i, j;
     for (i = 0; i < steps; ++i) {
-        const int status = ariane4_forward_dynamics(q, dq, current, parameters, ddq);
+        const ariane4_status_t status = ariane4_forward_dynamics(q, dq, current, parameters, ddq);
         if (status != ARIANE4_STATUS_OK) {
-            return status;
+            return (int)status;
         }
         for (j = 0; j < ARIANE4_N_JOINTS; ++j) {
             dq[j] += dt * ddq[j];
             q[j] += dt * dq[j];
         }
     }
-    return ARIANE4_STATUS_OK;
+    return (int)ARIANE4_STATUS_OK;
 }

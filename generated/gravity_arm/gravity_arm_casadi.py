@@ -91,37 +91,37 @@ def _inverse_dynamics(name: str) -> ca.Function:
     in   parameters  [10]             base parameters; norm at most 1e+09
     out  input       [2]   [N m]      inputs: motor currents, efforts where undriven
 
-    Operations: 46 (27 mul, 19 add, 0 neg), 4 trig, 2 other.
+    Operations: 46 (27 mul, 19 add, 0 neg), 4 trig, 2 other calls (sign, select and the like).
     """
     inputs = [ca.SX.sym("q", 2), ca.SX.sym("dq", 2), ca.SX.sym("ddq", 2), ca.SX.sym("parameters", 10)]
     [q, dq, ddq, parameters] = (ca.vertsplit(vector) for vector in inputs)
     out = [ca.SX(0)] * 2
     t0 = ca.cos(q[0])
-    t1 = 9.81 * t0
-    t2 = t1 + 0.538534 * (dq[0] * dq[0])
+    t1 = 9.81 * t0 # link j1: motion
+    t2 = t1 + 0.538534 * (dq[0] * dq[0]) # link j2: motion
     t3 = ca.sin(q[1])
     t4 = ca.sin(q[0])
-    t5 = 9.81 * t4
-    t6 = t5 + 0.538534 * ddq[0]
+    t5 = 9.81 * t4 # link j1: motion
+    t6 = t5 + 0.538534 * ddq[0] # link j2: motion
     t7 = ca.cos(q[1])
     MX2 = parameters[4]  # kg m
     MY2 = parameters[5]  # kg m
-    t8 = MX2 * (t3 * t2 + t7 * t6) + MY2 * (t7 * t2 - t3 * t6)
-    t9 = ddq[0] + ddq[1]
+    t8 = MX2 * (t3 * t2 + t7 * t6) + MY2 * (t7 * t2 - t3 * t6) # link j2: force and moment
+    t9 = ddq[0] + ddq[1] # link j2: motion
     ZZ2 = parameters[3]  # kg m^2
-    t10 = ZZ2 * t9 + t8
-    t11 = dq[0] + dq[1]
+    t10 = ZZ2 * t9 + t8 # link j2: force and moment
+    t11 = dq[0] + dq[1] # link j2: motion
     t12 = t11 * t11
-    t13 = t7 * (MX2 * t9 - MY2 * t12) - t3 * (MX2 * t12 + MY2 * t9)
+    t13 = t7 * (MX2 * t9 - MY2 * t12) - t3 * (MX2 * t12 + MY2 * t9) # link j2: what it passes on
     MX1R = parameters[1]  # kg m
     MY1 = parameters[2]  # kg m
     ZZ1R = parameters[0]  # kg m^2
     t14 = MX1R * t5 + MY1 * t1 + ZZ1R * ddq[0] + (t10 + 0.538534 * t13)
-    t15 = ca.sign(dq[0])
+    t15 = ca.sign(dq[0]) # joint j1: coulomb_friction
     FV1 = parameters[6]  # N m s/rad
     FC1 = parameters[7]  # N m
     out[0] = FV1 * dq[0] + FC1 * t15 + t14
-    t16 = ca.sign(dq[1])
+    t16 = ca.sign(dq[1]) # joint j2: coulomb_friction
     FV2 = parameters[8]  # N m s/rad
     FC2 = parameters[9]  # N m
     out[1] = FV2 * dq[1] + FC2 * t16 + t10
@@ -146,14 +146,14 @@ def _gravity(name: str) -> ca.Function:
     [q, parameters] = (ca.vertsplit(vector) for vector in inputs)
     out = [ca.SX(0)] * 2
     t0 = ca.sin(q[0])
-    t1 = 9.81 * t0
+    t1 = 9.81 * t0 # link j1: motion
     t2 = ca.cos(q[1])
     t3 = ca.cos(q[0])
     t4 = 9.81 * t3
     t5 = ca.sin(q[1])
     MX2 = parameters[4]  # kg m
     MY2 = parameters[5]  # kg m
-    t6 = MX2 * (t2 * t1 + t5 * t4) + MY2 * (t2 * t4 - t5 * t1)
+    t6 = MX2 * (t2 * t1 + t5 * t4) + MY2 * (t2 * t4 - t5 * t1) # link j2: force and moment
     MX1R = parameters[1]  # kg m
     MY1 = parameters[2]  # kg m
     out[0] = MX1R * t1 + MY1 * t4 + t6
@@ -174,32 +174,32 @@ def _bias(name: str) -> ca.Function:
     in   parameters  [10]           base parameters; norm at most 1e+09
     out  input       [2]   [N m]    inputs: motor currents, efforts where undriven
 
-    Operations: 35 (22 mul, 13 add, 0 neg), 4 trig, 2 other.
+    Operations: 35 (22 mul, 13 add, 0 neg), 4 trig, 2 other calls (sign, select and the like).
     """
     inputs = [ca.SX.sym("q", 2), ca.SX.sym("dq", 2), ca.SX.sym("parameters", 10)]
     [q, dq, parameters] = (ca.vertsplit(vector) for vector in inputs)
     out = [ca.SX(0)] * 2
     t0 = ca.cos(q[0])
-    t1 = 9.81 * t0
-    t2 = t1 + 0.538534 * (dq[0] * dq[0])
+    t1 = 9.81 * t0 # link j1: motion
+    t2 = t1 + 0.538534 * (dq[0] * dq[0]) # link j2: motion
     t3 = ca.sin(q[1])
     t4 = ca.sin(q[0])
-    t5 = 9.81 * t4
+    t5 = 9.81 * t4 # link j1: motion
     t6 = ca.cos(q[1])
     MX2 = parameters[4]  # kg m
     MY2 = parameters[5]  # kg m
-    t7 = MX2 * (t3 * t2 + t6 * t5) + MY2 * (t6 * t2 - t3 * t5)
-    t8 = dq[0] + dq[1]
+    t7 = MX2 * (t3 * t2 + t6 * t5) + MY2 * (t6 * t2 - t3 * t5) # link j2: force and moment
+    t8 = dq[0] + dq[1] # link j2: motion
     t9 = t8 * t8
-    t10 = -0.538534 * (t3 * (MX2 * t9) + t6 * (MY2 * t9))
-    t11 = ca.sign(dq[0])
+    t10 = -0.538534 * (t3 * (MX2 * t9) + t6 * (MY2 * t9)) # link j2: what it passes on
+    t11 = ca.sign(dq[0]) # joint j1: coulomb_friction
     FV1 = parameters[6]  # N m s/rad
     FC1 = parameters[7]  # N m
     MX1R = parameters[1]  # kg m
     MY1 = parameters[2]  # kg m
     t12 = FV1 * dq[0] + FC1 * t11 + (MX1R * t5 + MY1 * t1 + (t7 + t10))
     out[0] = t12
-    t13 = ca.sign(dq[1])
+    t13 = ca.sign(dq[1]) # joint j2: coulomb_friction
     FV2 = parameters[8]  # N m s/rad
     FC2 = parameters[9]  # N m
     out[1] = FV2 * dq[1] + FC2 * t13 + t7
@@ -227,7 +227,7 @@ def _mass_matrix(name: str) -> ca.Function:
     t1 = ca.cos(q[1])
     MX2 = parameters[4]  # kg m
     MY2 = parameters[5]  # kg m
-    t2 = t1 * MX2 - t0 * MY2
+    t2 = t1 * MX2 - t0 * MY2 # link j2: column of the mass matrix
     ZZ1R = parameters[0]  # kg m^2
     ZZ2 = parameters[3]  # kg m^2
     out[0] = ZZ1R + (ZZ2 + 1.077068 * t2)
@@ -252,7 +252,7 @@ def _forward_dynamics(name: str) -> ca.Function:
     in   parameters  [10]             base parameters; norm at most 1e+09
     out  ddq         [2]   [rad/s^2]  joint accelerations
 
-    Operations: 56 (33 mul, 23 add, 0 neg), 2 div, 4 trig, 2 other.
+    Operations: 56 (33 mul, 23 add, 0 neg), 2 div, 4 trig, 2 other calls (sign, select and the like).
     """
     inputs = [ca.SX.sym("q", 2), ca.SX.sym("dq", 2), ca.SX.sym("input", 2), ca.SX.sym("parameters", 10)]
     [q, dq, input, parameters] = (ca.vertsplit(vector) for vector in inputs)
@@ -262,30 +262,30 @@ def _forward_dynamics(name: str) -> ca.Function:
     t1 = ca.cos(q[1])
     MY2 = parameters[5]  # kg m
     MX2 = parameters[4]  # kg m
-    t2 = t0 * MY2 - t1 * MX2
+    t2 = t0 * MY2 - t1 * MX2 # link j2: column of the mass matrix
     t3 = 0.538534 * t2 - ZZ2
     t4 = 1.0 / ZZ2
     t5 = t3 * t4
     ZZ1R = parameters[0]  # kg m^2
-    t6 = ZZ1R + (ZZ2 + -1.077068 * t2)
+    t6 = ZZ1R + (ZZ2 + -1.077068 * t2) # link j2: inertia of it and all beyond
     t7 = t6 - t3 * t5
     t8 = t7 + -1e-09 * t6
     t9 = ca.cos(q[0])
-    t10 = -9.81 * t9
-    t11 = t10 + -0.538534 * (dq[0] * dq[0])
+    t10 = -9.81 * t9 # link j1: motion
+    t11 = t10 + -0.538534 * (dq[0] * dq[0]) # link j2: motion
     t12 = ca.sin(q[0])
-    t13 = -9.81 * t12
-    t14 = MX2 * (t0 * t11 + t1 * t13) + MY2 * (t1 * t11 - t0 * t13)
-    t15 = dq[0] + dq[1]
+    t13 = -9.81 * t12 # link j1: motion
+    t14 = MX2 * (t0 * t11 + t1 * t13) + MY2 * (t1 * t11 - t0 * t13) # link j2: force and moment
+    t15 = dq[0] + dq[1] # link j2: motion
     t16 = t15 * t15
-    t17 = 0.538534 * (t0 * (MX2 * t16) + t1 * (MY2 * t16))
-    t18 = ca.sign(dq[0])
+    t17 = 0.538534 * (t0 * (MX2 * t16) + t1 * (MY2 * t16)) # link j2: what it passes on
+    t18 = ca.sign(dq[0]) # joint j1: coulomb_friction
     MX1R = parameters[1]  # kg m
     MY1 = parameters[2]  # kg m
     FV1 = parameters[6]  # N m s/rad
     FC1 = parameters[7]  # N m
     t19 = MX1R * t13 + MY1 * t10 + (t14 + t17) - (FV1 * dq[0] + FC1 * t18)
-    t20 = ca.sign(dq[1])
+    t20 = ca.sign(dq[1]) # joint j2: coulomb_friction
     FV2 = parameters[8]  # N m s/rad
     FC2 = parameters[9]  # N m
     t21 = input[1] - (FV2 * dq[1] + FC2 * t20 - t14)
@@ -316,8 +316,8 @@ def _energy(name: str) -> ca.Function:
     [q, dq, parameters] = (ca.vertsplit(vector) for vector in inputs)
     out_kinetic = [ca.SX(0)] * 1
     out_potential = [ca.SX(0)] * 1
-    t0 = dq[0] + dq[1]
-    t1 = 0.538534 * dq[0]
+    t0 = dq[0] + dq[1] # link j2: motion
+    t1 = 0.538534 * dq[0] # link j2: velocity of its origin
     t2 = ca.cos(q[1])
     t3 = ca.sin(q[1])
     MX2 = parameters[4]  # kg m
@@ -328,7 +328,7 @@ def _energy(name: str) -> ca.Function:
     t5 = 0.5 * (dq[0] * (ZZ1R * dq[0])) + 0.5 * (t0 * (ZZ2 * t0))
     out_kinetic[0] = t5 + t4
     t6 = ca.sin(q[0])
-    t7 = 9.81 * t6
+    t7 = 9.81 * t6 # link j1: motion
     t8 = ca.cos(q[0])
     t9 = -9.81 * t8
     t10 = MX2 * (t3 * t7 + t2 * t9) + MY2 * (t2 * t7 - t3 * t9)
@@ -356,19 +356,19 @@ def _regressor(name: str) -> ca.Function:
 
         0 ZZ1R, 1 MX1R, 2 MY1, 3 ZZ2, 4 MX2, 5 MY2, 6 FV1, 7 FC1, 8 FV2, 9 FC2
 
-    Operations: 26 (16 mul, 10 add, 0 neg), 4 trig, 2 other.
+    Operations: 26 (16 mul, 10 add, 0 neg), 4 trig, 2 other calls (sign, select and the like).
     """
     inputs = [ca.SX.sym("q", 2), ca.SX.sym("dq", 2), ca.SX.sym("ddq", 2)]
     [q, dq, ddq] = (ca.vertsplit(vector) for vector in inputs)
     out = [ca.SX(0)] * 20
     out[0] = ddq[0]
     t0 = ca.sin(q[0])
-    t1 = 9.81 * t0
+    t1 = 9.81 * t0 # link j1: motion
     out[1] = t1
     t2 = ca.cos(q[0])
     t3 = 9.81 * t2
     out[2] = t3
-    t4 = ddq[0] + ddq[1]
+    t4 = ddq[0] + ddq[1] # link j2: motion
     out[3] = t4
     out[13] = t4
     t5 = t3 + 0.538534 * (dq[0] * dq[0])
@@ -378,18 +378,18 @@ def _regressor(name: str) -> ca.Function:
     t9 = t6 * t5 + t8 * t7
     t10 = dq[0] + dq[1]
     t11 = t10 * t10
-    t12 = -0.538534 * t6
+    t12 = -0.538534 * t6 # link j2: velocities by those of the joints
     t13 = 0.538534 * t8
     out[4] = t9 + (t11 * t12 + t4 * t13)
     out[14] = t9
-    t14 = t8 * t5 - t6 * t7
+    t14 = t8 * t5 - t6 * t7 # link j2: motion
     out[5] = t14 + (t4 * t12 - t11 * t13)
     out[15] = t14
     out[6] = dq[0]
-    t15 = ca.sign(dq[0])
+    t15 = ca.sign(dq[0]) # joint j1: coulomb_friction
     out[7] = t15
     out[18] = dq[1]
-    t16 = ca.sign(dq[1])
+    t16 = ca.sign(dq[1]) # joint j2: coulomb_friction
     out[19] = t16
     outputs = [_matrix(out, 2, 10)]
     names_in = ["q", "dq", "ddq"]
@@ -413,19 +413,19 @@ def _regressor_standard(name: str) -> ca.Function:
         0 XX1, 1 XY1, 2 XZ1, 3 YY1, 4 YZ1, 5 ZZ1, 6 MX1, 7 MY1, 8 MZ1, 9 M1, 10 XX2, 11 XY2, 12 XZ2, 13 YY2,
         14 YZ2, 15 ZZ2, 16 MX2, 17 MY2, 18 MZ2, 19 M2, 20 FV1, 21 FC1, 22 FV2, 23 FC2
 
-    Operations: 29 (18 mul, 11 add, 0 neg), 4 trig, 2 other.
+    Operations: 29 (18 mul, 11 add, 0 neg), 4 trig, 2 other calls (sign, select and the like).
     """
     inputs = [ca.SX.sym("q", 2), ca.SX.sym("dq", 2), ca.SX.sym("ddq", 2)]
     [q, dq, ddq] = (ca.vertsplit(vector) for vector in inputs)
     out = [ca.SX(0)] * 48
     out[5] = ddq[0]
     t0 = ca.sin(q[0])
-    t1 = 9.81 * t0
+    t1 = 9.81 * t0 # link j1: motion
     out[6] = t1
     t2 = ca.cos(q[0])
     t3 = 9.81 * t2
     out[7] = t3
-    t4 = ddq[0] + ddq[1]
+    t4 = ddq[0] + ddq[1] # link j2: motion
     out[15] = t4
     out[39] = t4
     t5 = t3 + 0.538534 * (dq[0] * dq[0])
@@ -435,19 +435,19 @@ def _regressor_standard(name: str) -> ca.Function:
     t9 = t6 * t5 + t8 * t7
     t10 = dq[0] + dq[1]
     t11 = t10 * t10
-    t12 = -0.538534 * t6
+    t12 = -0.538534 * t6 # link j2: velocities by those of the joints
     t13 = 0.538534 * t8
     out[16] = t9 + (t11 * t12 + t4 * t13)
     out[40] = t9
-    t14 = t8 * t5 - t6 * t7
+    t14 = t8 * t5 - t6 * t7 # link j2: motion
     out[17] = t14 + (t4 * t12 - t11 * t13)
     out[41] = t14
     out[19] = t14 * t12 + t9 * t13
     out[20] = dq[0]
-    t15 = ca.sign(dq[0])
+    t15 = ca.sign(dq[0]) # joint j1: coulomb_friction
     out[21] = t15
     out[46] = dq[1]
-    t16 = ca.sign(dq[1])
+    t16 = ca.sign(dq[1]) # joint j2: coulomb_friction
     out[47] = t16
     outputs = [_matrix(out, 2, 24)]
     names_in = ["q", "dq", "ddq"]
@@ -469,19 +469,19 @@ def _regressor_packed(name: str) -> ca.Function:
 
         0 ZZ1R, 1 MX1R, 2 MY1, 3 ZZ2, 4 MX2, 5 MY2, 6 FV1, 7 FC1, 8 FV2, 9 FC2
 
-    Operations: 26 (16 mul, 10 add, 0 neg), 4 trig, 2 other.
+    Operations: 26 (16 mul, 10 add, 0 neg), 4 trig, 2 other calls (sign, select and the like).
     """
     inputs = [ca.SX.sym("q", 2), ca.SX.sym("dq", 2), ca.SX.sym("ddq", 2)]
     [q, dq, ddq] = (ca.vertsplit(vector) for vector in inputs)
     out = [ca.SX(0)] * 13
     out[0] = ddq[0]
     t0 = ca.sin(q[0])
-    t1 = 9.81 * t0
+    t1 = 9.81 * t0 # link j1: motion
     out[1] = t1
     t2 = ca.cos(q[0])
     t3 = 9.81 * t2
     out[2] = t3
-    t4 = ddq[0] + ddq[1]
+    t4 = ddq[0] + ddq[1] # link j2: motion
     out[3] = t4
     out[8] = t4
     t5 = t3 + 0.538534 * (dq[0] * dq[0])
@@ -491,18 +491,18 @@ def _regressor_packed(name: str) -> ca.Function:
     t9 = t6 * t5 + t8 * t7
     t10 = dq[0] + dq[1]
     t11 = t10 * t10
-    t12 = -0.538534 * t6
+    t12 = -0.538534 * t6 # link j2: velocities by those of the joints
     t13 = 0.538534 * t8
     out[4] = t9 + (t11 * t12 + t4 * t13)
     out[9] = t9
-    t14 = t8 * t5 - t6 * t7
+    t14 = t8 * t5 - t6 * t7 # link j2: motion
     out[5] = t14 + (t4 * t12 - t11 * t13)
     out[10] = t14
     out[6] = dq[0]
-    t15 = ca.sign(dq[0])
+    t15 = ca.sign(dq[0]) # joint j1: coulomb_friction
     out[7] = t15
     out[11] = dq[1]
-    t16 = ca.sign(dq[1])
+    t16 = ca.sign(dq[1]) # joint j2: coulomb_friction
     out[12] = t16
     outputs = [_vector(out)]
     names_in = ["q", "dq", "ddq"]
@@ -526,19 +526,19 @@ def _slotine_li_regressor(name: str) -> ca.Function:
 
         0 ZZ1R, 1 MX1R, 2 MY1, 3 ZZ2, 4 MX2, 5 MY2, 6 FV1, 7 FC1, 8 FV2, 9 FC2
 
-    Operations: 27 (16 mul, 11 add, 0 neg), 4 trig, 2 other.
+    Operations: 27 (16 mul, 11 add, 0 neg), 4 trig, 2 other calls (sign, select and the like).
     """
     inputs = [ca.SX.sym("q", 2), ca.SX.sym("dq", 2), ca.SX.sym("dq_r", 2), ca.SX.sym("ddq_r", 2)]
     [q, dq, dq_r, ddq_r] = (ca.vertsplit(vector) for vector in inputs)
     out = [ca.SX(0)] * 20
     out[0] = ddq_r[0]
     t0 = ca.sin(q[0])
-    t1 = 9.81 * t0
+    t1 = 9.81 * t0 # link j1: motion
     out[1] = t1
     t2 = ca.cos(q[0])
     t3 = 9.81 * t2
     out[2] = t3
-    t4 = ddq_r[0] + ddq_r[1]
+    t4 = ddq_r[0] + ddq_r[1] # link j2: motion
     out[3] = t4
     out[13] = t4
     t5 = t3 + 0.538534 * (dq[0] * dq_r[0])
@@ -547,18 +547,18 @@ def _slotine_li_regressor(name: str) -> ca.Function:
     t8 = ca.cos(q[1])
     t9 = t6 * t5 + t8 * t7
     t10 = (dq[0] + dq[1]) * (dq_r[0] + dq_r[1])
-    t11 = -0.538534 * t6
+    t11 = -0.538534 * t6 # link j2: velocities by those of the joints
     t12 = 0.538534 * t8
     out[4] = t9 + (t11 * t10 + t12 * t4)
     out[14] = t9
-    t13 = t8 * t5 - t6 * t7
+    t13 = t8 * t5 - t6 * t7 # link j2: motion
     out[5] = t13 + (t11 * t4 - t12 * t10)
     out[15] = t13
     out[6] = dq[0]
-    t14 = ca.sign(dq[0])
+    t14 = ca.sign(dq[0]) # joint j1: coulomb_friction
     out[7] = t14
     out[18] = dq[1]
-    t15 = ca.sign(dq[1])
+    t15 = ca.sign(dq[1]) # joint j2: coulomb_friction
     out[19] = t15
     outputs = [_matrix(out, 2, 10)]
     names_in = ["q", "dq", "dq_r", "ddq_r"]
@@ -577,18 +577,18 @@ def _inverse_dynamics_standard(name: str) -> ca.Function:
     in   parameters  [24]             standard parameters; norm at most 1e+09
     out  input       [2]   [N m]      inputs: motor currents, efforts where undriven
 
-    Operations: 50 (29 mul, 21 add, 0 neg), 4 trig, 2 other.
+    Operations: 50 (29 mul, 21 add, 0 neg), 4 trig, 2 other calls (sign, select and the like).
     """
     inputs = [ca.SX.sym("q", 2), ca.SX.sym("dq", 2), ca.SX.sym("ddq", 2), ca.SX.sym("parameters", 24)]
     [q, dq, ddq, parameters] = (ca.vertsplit(vector) for vector in inputs)
     out = [ca.SX(0)] * 2
     t0 = ca.cos(q[0])
-    t1 = 9.81 * t0
-    t2 = t1 + 0.538534 * (dq[0] * dq[0])
+    t1 = 9.81 * t0 # link j1: motion
+    t2 = t1 + 0.538534 * (dq[0] * dq[0]) # link j2: motion
     t3 = ca.sin(q[1])
     t4 = ca.sin(q[0])
-    t5 = 9.81 * t4
-    t6 = t5 + 0.538534 * ddq[0]
+    t5 = 9.81 * t4 # link j1: motion
+    t6 = t5 + 0.538534 * ddq[0] # link j2: motion
     t7 = ca.cos(q[1])
     t8 = t3 * t2 + t7 * t6
     t9 = t7 * t2 - t3 * t6
@@ -596,21 +596,21 @@ def _inverse_dynamics_standard(name: str) -> ca.Function:
     ZZ2 = parameters[15]  # kg m^2
     MX2 = parameters[16]  # kg m
     MY2 = parameters[17]  # kg m
-    t11 = t10 * ZZ2 + (t8 * MX2 + t9 * MY2)
-    t12 = dq[0] + dq[1]
+    t11 = t10 * ZZ2 + (t8 * MX2 + t9 * MY2) # link j2: force and moment
+    t12 = dq[0] + dq[1] # link j2: motion
     t13 = t12 * t12
     M2 = parameters[19]  # kg
-    t14 = t3 * (t9 * M2 + (t13 * MX2 + t10 * MY2))
+    t14 = t3 * (t9 * M2 + (t13 * MX2 + t10 * MY2)) # link j2: what it passes on
     t15 = t7 * (t8 * M2 + (t10 * MX2 - t13 * MY2))
     MX1 = parameters[6]  # kg m
     MY1 = parameters[7]  # kg m
     ZZ1 = parameters[5]  # kg m^2
     t16 = t5 * MX1 + t1 * MY1 + ddq[0] * ZZ1 + (t11 + 0.538534 * (t15 - t14))
-    t17 = ca.sign(dq[0])
+    t17 = ca.sign(dq[0]) # joint j1: coulomb_friction
     FV1 = parameters[20]  # N m s/rad
     FC1 = parameters[21]  # N m
     out[0] = dq[0] * FV1 + t17 * FC1 + t16
-    t18 = ca.sign(dq[1])
+    t18 = ca.sign(dq[1]) # joint j2: coulomb_friction
     FV2 = parameters[22]  # N m s/rad
     FC2 = parameters[23]  # N m
     out[1] = dq[1] * FV2 + t18 * FC2 + t11
@@ -635,18 +635,18 @@ def _gravity_standard(name: str) -> ca.Function:
     [q, parameters] = (ca.vertsplit(vector) for vector in inputs)
     out = [ca.SX(0)] * 2
     t0 = ca.cos(q[0])
-    t1 = 9.81 * t0
+    t1 = 9.81 * t0 # link j1: motion
     t2 = ca.sin(q[1])
     t3 = ca.sin(q[0])
     t4 = 9.81 * t3
     t5 = ca.cos(q[1])
-    t6 = t2 * t1 + t5 * t4
+    t6 = t2 * t1 + t5 * t4 # link j2: motion
     t7 = t5 * t1 - t2 * t4
     MX2 = parameters[16]  # kg m
     MY2 = parameters[17]  # kg m
-    t8 = t6 * MX2 + t7 * MY2
+    t8 = t6 * MX2 + t7 * MY2 # link j2: force and moment
     M2 = parameters[19]  # kg
-    t9 = 0.538534 * (t5 * (t6 * M2) - t2 * (t7 * M2))
+    t9 = 0.538534 * (t5 * (t6 * M2) - t2 * (t7 * M2)) # link j2: what it passes on
     MX1 = parameters[6]  # kg m
     MY1 = parameters[7]  # kg m
     out[0] = t4 * MX1 + t1 * MY1 + (t8 + t9)
@@ -667,35 +667,35 @@ def _bias_standard(name: str) -> ca.Function:
     in   parameters  [24]           standard parameters; norm at most 1e+09
     out  input       [2]   [N m]    inputs: motor currents, efforts where undriven
 
-    Operations: 39 (24 mul, 15 add, 0 neg), 4 trig, 2 other.
+    Operations: 39 (24 mul, 15 add, 0 neg), 4 trig, 2 other calls (sign, select and the like).
     """
     inputs = [ca.SX.sym("q", 2), ca.SX.sym("dq", 2), ca.SX.sym("parameters", 24)]
     [q, dq, parameters] = (ca.vertsplit(vector) for vector in inputs)
     out = [ca.SX(0)] * 2
     t0 = ca.cos(q[0])
-    t1 = 9.81 * t0
-    t2 = t1 + 0.538534 * (dq[0] * dq[0])
+    t1 = 9.81 * t0 # link j1: motion
+    t2 = t1 + 0.538534 * (dq[0] * dq[0]) # link j2: motion
     t3 = ca.cos(q[1])
     t4 = ca.sin(q[0])
-    t5 = 9.81 * t4
+    t5 = 9.81 * t4 # link j1: motion
     t6 = ca.sin(q[1])
-    t7 = t3 * t2 - t6 * t5
+    t7 = t3 * t2 - t6 * t5 # link j2: motion
     t8 = dq[0] + dq[1]
     t9 = t8 * t8
     t10 = t6 * t2 + t3 * t5
     M2 = parameters[19]  # kg
     MY2 = parameters[17]  # kg m
     MX2 = parameters[16]  # kg m
-    t11 = t3 * (M2 * t10 - t9 * MY2) - t6 * (M2 * t7 + t9 * MX2)
-    t12 = MX2 * t10 + MY2 * t7
+    t11 = t3 * (M2 * t10 - t9 * MY2) - t6 * (M2 * t7 + t9 * MX2) # link j2: what it passes on
+    t12 = MX2 * t10 + MY2 * t7 # link j2: force and moment
     MX1 = parameters[6]  # kg m
     MY1 = parameters[7]  # kg m
-    t13 = t5 * MX1 + t1 * MY1 + (t12 + 0.538534 * t11)
-    t14 = ca.sign(dq[0])
+    t13 = t5 * MX1 + t1 * MY1 + (t12 + 0.538534 * t11) # link j2: what it passes on
+    t14 = ca.sign(dq[0]) # joint j1: coulomb_friction
     FV1 = parameters[20]  # N m s/rad
     FC1 = parameters[21]  # N m
     out[0] = dq[0] * FV1 + t14 * FC1 + t13
-    t15 = ca.sign(dq[1])
+    t15 = ca.sign(dq[1]) # joint j2: coulomb_friction
     FV2 = parameters[22]  # N m s/rad
     FC2 = parameters[23]  # N m
     out[1] = dq[1] * FV2 + t15 * FC2 + t12
@@ -723,13 +723,13 @@ def _mass_matrix_standard(name: str) -> ca.Function:
     t1 = ca.cos(q[1])
     MX2 = parameters[16]  # kg m
     MY2 = parameters[17]  # kg m
-    t2 = t1 * MX2 - t0 * MY2
+    t2 = t1 * MX2 - t0 * MY2 # link j2: column of the mass matrix
     ZZ1 = parameters[5]  # kg m^2
     ZZ2 = parameters[15]  # kg m^2
     M2 = parameters[19]  # kg
-    t3 = ZZ1 + (ZZ2 + 0.538534 * (0.538534 * M2 + 2.0 * t2))
+    t3 = ZZ1 + (ZZ2 + 0.538534 * (0.538534 * M2 + 2.0 * t2)) # link j2: inertia of it and all beyond
     out[0] = t3
-    t4 = ZZ2 + 0.538534 * t2
+    t4 = ZZ2 + 0.538534 * t2 # link j2: column of the mass matrix
     out[1] = t4
     out[2] = t4
     out[3] = ZZ2
@@ -750,7 +750,7 @@ def _forward_dynamics_standard(name: str) -> ca.Function:
     in   parameters  [24]             standard parameters; norm at most 1e+09
     out  ddq         [2]   [rad/s^2]  joint accelerations
 
-    Operations: 63 (37 mul, 26 add, 0 neg), 2 div, 4 trig, 2 other.
+    Operations: 63 (37 mul, 26 add, 0 neg), 2 div, 4 trig, 2 other calls (sign, select and the like).
     """
     inputs = [ca.SX.sym("q", 2), ca.SX.sym("dq", 2), ca.SX.sym("input", 2), ca.SX.sym("parameters", 24)]
     [q, dq, input, parameters] = (ca.vertsplit(vector) for vector in inputs)
@@ -760,31 +760,31 @@ def _forward_dynamics_standard(name: str) -> ca.Function:
     t1 = ca.cos(q[1])
     MY2 = parameters[17]  # kg m
     MX2 = parameters[16]  # kg m
-    t2 = t0 * MY2 - t1 * MX2
+    t2 = t0 * MY2 - t1 * MX2 # link j2: column of the mass matrix
     t3 = 0.538534 * t2 - ZZ2
     t4 = 1.0 / ZZ2
     t5 = t3 * t4
     ZZ1 = parameters[5]  # kg m^2
     M2 = parameters[19]  # kg
-    t6 = ZZ1 + (ZZ2 + 0.538534 * (0.538534 * M2 + -2.0 * t2))
+    t6 = ZZ1 + (ZZ2 + 0.538534 * (0.538534 * M2 + -2.0 * t2)) # link j2: inertia of it and all beyond
     t7 = t6 - t3 * t5
     t8 = t7 + -1e-09 * t6
     t9 = ca.cos(q[0])
-    t10 = -9.81 * t9
-    t11 = t10 + -0.538534 * (dq[0] * dq[0])
+    t10 = -9.81 * t9 # link j1: motion
+    t11 = t10 + -0.538534 * (dq[0] * dq[0]) # link j2: motion
     t12 = ca.sin(q[0])
-    t13 = -9.81 * t12
-    t14 = t0 * t13 - t1 * t11
+    t13 = -9.81 * t12 # link j1: motion
+    t14 = t0 * t13 - t1 * t11 # link j2: motion
     t15 = dq[0] + dq[1]
     t16 = t15 * t15
     t17 = t0 * t11 + t1 * t13
-    t18 = t0 * (M2 * t14 + t16 * MX2) + t1 * (M2 * t17 + t16 * MY2)
-    t19 = MX2 * t17 - MY2 * t14
+    t18 = t0 * (M2 * t14 + t16 * MX2) + t1 * (M2 * t17 + t16 * MY2) # link j2: what it passes on
+    t19 = MX2 * t17 - MY2 * t14 # link j2: force and moment
     MX1 = parameters[6]  # kg m
     MY1 = parameters[7]  # kg m
-    t20 = t13 * MX1 + t10 * MY1 + (t19 + 0.538534 * t18)
-    t21 = ca.sign(dq[0])
-    t22 = ca.sign(dq[1])
+    t20 = t13 * MX1 + t10 * MY1 + (t19 + 0.538534 * t18) # link j2: what it passes on
+    t21 = ca.sign(dq[0]) # joint j1: coulomb_friction
+    t22 = ca.sign(dq[1]) # joint j2: coulomb_friction
     FV2 = parameters[22]  # N m s/rad
     FC2 = parameters[23]  # N m
     t23 = input[1] - (dq[1] * FV2 + t22 * FC2 - t19)
@@ -818,12 +818,12 @@ def _energy_standard(name: str) -> ca.Function:
     [q, dq, parameters] = (ca.vertsplit(vector) for vector in inputs)
     out_kinetic = [ca.SX(0)] * 1
     out_potential = [ca.SX(0)] * 1
-    t0 = 0.538534 * dq[0]
+    t0 = 0.538534 * dq[0] # link j2: velocity of its origin
     t1 = ca.sin(q[1])
     t2 = t1 * t0
     t3 = ca.cos(q[1])
     t4 = t3 * t0
-    t5 = dq[0] + dq[1]
+    t5 = dq[0] + dq[1] # link j2: motion
     ZZ2 = parameters[15]  # kg m^2
     M2 = parameters[19]  # kg
     t6 = t5 * (t5 * ZZ2) + M2 * (t2 * t2 + t4 * t4)
@@ -833,7 +833,7 @@ def _energy_standard(name: str) -> ca.Function:
     t7 = 0.5 * (dq[0] * (dq[0] * ZZ1)) + 0.5 * t6 + (MX2 * (t5 * t4) - MY2 * (t5 * t2))
     out_kinetic[0] = t7
     t8 = ca.cos(q[0])
-    t9 = -9.81 * t8
+    t9 = -9.81 * t8 # link j1: motion
     t10 = ca.sin(q[0])
     t11 = 9.81 * t10
     t12 = (t3 * t9 + t1 * t11) * MX2 + (t3 * t11 - t1 * t9) * MY2
@@ -872,7 +872,7 @@ def _forward_kinematics(name: str) -> ca.Function:
     out_T_j1[15] = 1.0
     t2 = ca.cos(q[1])
     t3 = ca.sin(q[1])
-    t4 = t0 * t2 - t1 * t3
+    t4 = t0 * t2 - t1 * t3 # link j2: pose
     out_T_j2[0] = t4
     t5 = t0 * t3 + t1 * t2
     out_T_j2[1] = -t5
@@ -980,8 +980,8 @@ def _drive_gain(name: str) -> ca.Function:
 
     Joint effort per input.
 
-    in   q     [2]  [rad]              joint coordinates; norm at most 10000
-    out  gain  [2]  [(N m) per (N m)]  drive gains K
+    in   q     [2]  [rad]          joint coordinates; norm at most 10000
+    out  gain  [2]  [N m per N m]  drive gains K
 
     Operations: 0 (0 mul, 0 add, 0 neg).
     """
@@ -1002,16 +1002,16 @@ def _inverse_dynamics_derivatives(name: str) -> ca.Function:
     Inputs that give the accelerations ddq, and their derivatives; at a kink of a law, as of dry
     friction at rest, the mean of both sides; base parameters.
 
-    in   q             [2]   [rad]                  joint coordinates; norm at most 10000
-    in   dq            [2]   [rad/s]                joint velocities; norm at most 100000
-    in   ddq           [2]   [rad/s^2]              joint accelerations; norm at most 1e+08
-    in   parameters    [10]                         base parameters; norm at most 1e+09
-    out  input         [2]   [N m]                  inputs: motor currents, efforts where undriven
-    out  input_by_q    [4]   [(N m) per (rad)]      d input / d q; 2 x 2, row-major
-    out  input_by_dq   [4]   [(N m) per (rad/s)]    d input / d dq; 2 x 2, row-major
-    out  input_by_ddq  [4]   [(N m) per (rad/s^2)]  d input / d ddq; 2 x 2, row-major
+    in   q             [2]   [rad]                joint coordinates; norm at most 10000
+    in   dq            [2]   [rad/s]              joint velocities; norm at most 100000
+    in   ddq           [2]   [rad/s^2]            joint accelerations; norm at most 1e+08
+    in   parameters    [10]                       base parameters; norm at most 1e+09
+    out  input         [2]   [N m]                inputs: motor currents, efforts where undriven
+    out  input_by_q    [4]   [N m per rad]        d input / d q; 2 x 2, row-major
+    out  input_by_dq   [4]   [N m per (rad/s)]    d input / d dq; 2 x 2, row-major
+    out  input_by_ddq  [4]   [N m per (rad/s^2)]  d input / d ddq; 2 x 2, row-major
 
-    Operations: 92 (57 mul, 35 add, 0 neg), 4 trig, 2 other.
+    Operations: 92 (57 mul, 35 add, 0 neg), 4 trig, 2 other calls (sign, select and the like).
     """
     inputs = [ca.SX.sym("q", 2), ca.SX.sym("dq", 2), ca.SX.sym("ddq", 2), ca.SX.sym("parameters", 10)]
     [q, dq, ddq, parameters] = (ca.vertsplit(vector) for vector in inputs)
@@ -1020,12 +1020,12 @@ def _inverse_dynamics_derivatives(name: str) -> ca.Function:
     out_input_by_dq = [ca.SX(0)] * 4
     out_input_by_ddq = [ca.SX(0)] * 4
     t0 = ca.cos(q[0])
-    t1 = 9.81 * t0
-    t2 = t1 + 0.538534 * (dq[0] * dq[0])
+    t1 = 9.81 * t0 # link j1: motion
+    t2 = t1 + 0.538534 * (dq[0] * dq[0]) # link j2: motion
     t3 = ca.sin(q[1])
     t4 = ca.sin(q[0])
-    t5 = -9.81 * t4
-    t6 = t5 + -0.538534 * ddq[0]
+    t5 = -9.81 * t4 # link j1: motion
+    t6 = t5 + -0.538534 * ddq[0] # link j2: motion
     t7 = ca.cos(q[1])
     t8 = t3 * t2 - t7 * t6
     t9 = t7 * t2 + t3 * t6
@@ -1033,39 +1033,40 @@ def _inverse_dynamics_derivatives(name: str) -> ca.Function:
     ZZ2 = parameters[3]  # kg m^2
     MX2 = parameters[4]  # kg m
     MY2 = parameters[5]  # kg m
-    t11 = ZZ2 * t10 + (MX2 * t8 + MY2 * t9)
-    t12 = dq[0] + dq[1]
+    t11 = ZZ2 * t10 + (MX2 * t8 + MY2 * t9) # link j2: force and moment
+    t12 = dq[0] + dq[1] # link j2: motion
     t13 = t12 * t12
-    t14 = MX2 * t13 + MY2 * t10
+    t14 = MX2 * t13 + MY2 * t10 # link j2: force and moment
     t15 = MY2 * t13 - MX2 * t10
     MY1 = parameters[2]  # kg m
     MX1R = parameters[1]  # kg m
     ZZ1R = parameters[0]  # kg m^2
+    # link j2: what it passes on
     t16 = MY1 * t1 - MX1R * t5 + ZZ1R * ddq[0] + (t11 + -0.538534 * (t3 * t14 + t7 * t15))
-    t17 = ca.sign(dq[0])
+    t17 = ca.sign(dq[0]) # joint j1: coulomb_friction
     FV1 = parameters[6]  # N m s/rad
     FC1 = parameters[7]  # N m
     out_input[0] = FV1 * dq[0] + FC1 * t17 + t16
-    t18 = ca.sign(dq[1])
+    t18 = ca.sign(dq[1]) # joint j2: coulomb_friction
     FV2 = parameters[8]  # N m s/rad
     FC2 = parameters[9]  # N m
     out_input[1] = FV2 * dq[1] + FC2 * t18 + t11
-    t19 = t7 * MX2 - t3 * MY2
+    t19 = t7 * MX2 - t3 * MY2 # link j2: column of the mass matrix
     t20 = t7 * MY2 + t3 * MX2
     out_input_by_q[0] = (MX1R + t19) * t1 + (MY1 + t20) * t5
     out_input_by_q[2] = t20 * t5 + t19 * t1
     t21 = MY2 * t12
     t22 = MX2 * t12
-    t23 = -0.538534 * (t7 * t21 + t3 * t22) + t20 * (0.538534 * dq[0])
+    t23 = -0.538534 * (t7 * t21 + t3 * t22) + t20 * (0.538534 * dq[0]) # link j2: inertia, momentum beyond
     out_input_by_dq[0] = FV1 + 2.0 * t23
     out_input_by_dq[2] = t20 * (1.077068 * dq[0])
     out_input_by_ddq[0] = ZZ1R + (ZZ2 + 1.077068 * t19)
-    t24 = ZZ2 + 0.538534 * t19
+    t24 = ZZ2 + 0.538534 * t19 # link j2: column of the mass matrix
     out_input_by_ddq[2] = t24
     t25 = MX2 * t9 - MY2 * t8
     out_input_by_q[1] = t25 + 0.538534 * (t3 * t15 - t7 * t14)
     out_input_by_q[3] = t25
-    t26 = 0.538534 * (t3 * (-2.0 * t22) + t7 * (-2.0 * t21))
+    t26 = 0.538534 * (t3 * (-2.0 * t22) + t7 * (-2.0 * t21)) # link j2: derivatives
     out_input_by_dq[1] = t26
     out_input_by_dq[3] = FV2
     out_input_by_ddq[1] = t24
@@ -1089,11 +1090,11 @@ def _forward_dynamics_derivatives(name: str) -> ca.Function:
                                                       most 1e+09
     in   parameters    [10]                           base parameters; norm at most 1e+09
     out  ddq           [2]   [rad/s^2]                joint accelerations
-    out  ddq_by_q      [4]   [(rad/s^2) per (rad)]    d ddq / d q; 2 x 2, row-major
+    out  ddq_by_q      [4]   [(rad/s^2) per rad]      d ddq / d q; 2 x 2, row-major
     out  ddq_by_dq     [4]   [(rad/s^2) per (rad/s)]  d ddq / d dq; 2 x 2, row-major
-    out  ddq_by_input  [4]   [(rad/s^2) per (N m)]    d ddq / d input; 2 x 2, row-major
+    out  ddq_by_input  [4]   [(rad/s^2) per N m]      d ddq / d input; 2 x 2, row-major
 
-    Operations: 132 (82 mul, 50 add, 0 neg), 2 div, 4 trig, 2 other.
+    Operations: 132 (82 mul, 50 add, 0 neg), 2 div, 4 trig, 2 other calls (sign, select and the like).
     """
     inputs = [ca.SX.sym("q", 2), ca.SX.sym("dq", 2), ca.SX.sym("input", 2), ca.SX.sym("parameters", 10)]
     [q, dq, input, parameters] = (ca.vertsplit(vector) for vector in inputs)
@@ -1106,31 +1107,31 @@ def _forward_dynamics_derivatives(name: str) -> ca.Function:
     t1 = ca.cos(q[1])
     MY2 = parameters[5]  # kg m
     MX2 = parameters[4]  # kg m
-    t2 = t0 * MY2 - t1 * MX2
+    t2 = t0 * MY2 - t1 * MX2 # link j2: column of the mass matrix
     t3 = 0.538534 * t2 - ZZ2
     t4 = 1.0 / ZZ2
     t5 = t3 * t4
     ZZ1R = parameters[0]  # kg m^2
-    t6 = ZZ1R + (ZZ2 + -1.077068 * t2)
+    t6 = ZZ1R + (ZZ2 + -1.077068 * t2) # link j2: inertia of it and all beyond
     t7 = t6 - t3 * t5
     t8 = t7 + -1e-09 * t6
     t9 = ca.cos(q[0])
-    t10 = -9.81 * t9
-    t11 = t10 + -0.538534 * (dq[0] * dq[0])
+    t10 = -9.81 * t9 # link j1: motion
+    t11 = t10 + -0.538534 * (dq[0] * dq[0]) # link j2: motion
     t12 = t0 * t11
     t13 = ca.sin(q[0])
-    t14 = -9.81 * t13
-    t15 = t1 * t11
-    t16 = MX2 * (t12 + t1 * t14) + MY2 * (t15 - t0 * t14)
-    t17 = dq[0] + dq[1]
+    t14 = -9.81 * t13 # link j1: motion
+    t15 = t1 * t11 # link j2: motion
+    t16 = MX2 * (t12 + t1 * t14) + MY2 * (t15 - t0 * t14) # link j2: force and moment
+    t17 = dq[0] + dq[1] # link j2: motion
     t18 = t17 * t17
-    t19 = MX2 * t18
+    t19 = MX2 * t18 # link j2: force and moment
     t20 = MY2 * t18
     MX1R = parameters[1]  # kg m
     MY1 = parameters[2]  # kg m
-    t21 = MX1R * t14 + MY1 * t10 + (t16 + 0.538534 * (t0 * t19 + t1 * t20))
-    t22 = ca.sign(dq[0])
-    t23 = ca.sign(dq[1])
+    t21 = MX1R * t14 + MY1 * t10 + (t16 + 0.538534 * (t0 * t19 + t1 * t20)) # link j2: what it passes on
+    t22 = ca.sign(dq[0]) # joint j1: coulomb_friction
+    t23 = ca.sign(dq[1]) # joint j2: coulomb_friction
     FV2 = parameters[8]  # N m s/rad
     FC2 = parameters[9]  # N m
     t24 = input[1] - (FV2 * dq[1] + FC2 * t23 - t16)
@@ -1142,18 +1143,18 @@ def _forward_dynamics_derivatives(name: str) -> ca.Function:
     out_ddq[0] = t27
     t28 = t24 * t4 + t5 * t27
     out_ddq[1] = t28
-    t29 = t1 * MY2 + t0 * MX2
-    t30 = (MX1R - t2) * t10 - (MY1 + t29) * t14
-    t31 = t29 * t14 + t2 * t10
+    t29 = t1 * MY2 + t0 * MX2 # link j2: column of the mass matrix
+    t30 = (MX1R - t2) * t10 - (MY1 + t29) * t14 # link j1: derivatives
+    t31 = t29 * t14 + t2 * t10 # link j2: derivatives
     t32 = t5 * t26
     out_ddq_by_q[0] = t26 * t30 - t31 * t32
     t33 = t4 + t5 * t32
     out_ddq_by_q[2] = t30 * t32 - t31 * t33
     t34 = MY2 * t17
     t35 = MX2 * t17
-    t36 = 0.538534 * (t1 * t34 + t0 * t35) - t29 * (0.538534 * dq[0])
+    t36 = 0.538534 * (t1 * t34 + t0 * t35) - t29 * (0.538534 * dq[0]) # link j2: inertia, momentum beyond
     t37 = 2.0 * t36 - FV1
-    t38 = t29 * (1.077068 * dq[0])
+    t38 = t29 * (1.077068 * dq[0]) # link j2: derivatives
     out_ddq_by_dq[0] = t26 * t37 - t38 * t32
     out_ddq_by_dq[2] = t37 * t32 - t38 * t33
     out_ddq_by_input[0] = t26
@@ -1183,16 +1184,16 @@ def _inverse_dynamics_derivatives_standard(name: str) -> ca.Function:
     Inputs that give the accelerations ddq, and their derivatives; at a kink of a law, as of dry
     friction at rest, the mean of both sides; standard parameters.
 
-    in   q             [2]   [rad]                  joint coordinates; norm at most 10000
-    in   dq            [2]   [rad/s]                joint velocities; norm at most 100000
-    in   ddq           [2]   [rad/s^2]              joint accelerations; norm at most 1e+08
-    in   parameters    [24]                         standard parameters; norm at most 1e+09
-    out  input         [2]   [N m]                  inputs: motor currents, efforts where undriven
-    out  input_by_q    [4]   [(N m) per (rad)]      d input / d q; 2 x 2, row-major
-    out  input_by_dq   [4]   [(N m) per (rad/s)]    d input / d dq; 2 x 2, row-major
-    out  input_by_ddq  [4]   [(N m) per (rad/s^2)]  d input / d ddq; 2 x 2, row-major
+    in   q             [2]   [rad]                joint coordinates; norm at most 10000
+    in   dq            [2]   [rad/s]              joint velocities; norm at most 100000
+    in   ddq           [2]   [rad/s^2]            joint accelerations; norm at most 1e+08
+    in   parameters    [24]                       standard parameters; norm at most 1e+09
+    out  input         [2]   [N m]                inputs: motor currents, efforts where undriven
+    out  input_by_q    [4]   [N m per rad]        d input / d q; 2 x 2, row-major
+    out  input_by_dq   [4]   [N m per (rad/s)]    d input / d dq; 2 x 2, row-major
+    out  input_by_ddq  [4]   [N m per (rad/s^2)]  d input / d ddq; 2 x 2, row-major
 
-    Operations: 100 (61 mul, 39 add, 0 neg), 4 trig, 2 other.
+    Operations: 100 (61 mul, 39 add, 0 neg), 4 trig, 2 other calls (sign, select and the like).
     """
     inputs = [ca.SX.sym("q", 2), ca.SX.sym("dq", 2), ca.SX.sym("ddq", 2), ca.SX.sym("parameters", 24)]
     [q, dq, ddq, parameters] = (ca.vertsplit(vector) for vector in inputs)
@@ -1201,12 +1202,12 @@ def _inverse_dynamics_derivatives_standard(name: str) -> ca.Function:
     out_input_by_dq = [ca.SX(0)] * 4
     out_input_by_ddq = [ca.SX(0)] * 4
     t0 = ca.cos(q[0])
-    t1 = 9.81 * t0
-    t2 = t1 + 0.538534 * (dq[0] * dq[0])
+    t1 = 9.81 * t0 # link j1: motion
+    t2 = t1 + 0.538534 * (dq[0] * dq[0]) # link j2: motion
     t3 = ca.sin(q[1])
     t4 = ca.sin(q[0])
-    t5 = -9.81 * t4
-    t6 = 0.538534 * ddq[0] - t5
+    t5 = -9.81 * t4 # link j1: motion
+    t6 = 0.538534 * ddq[0] - t5 # link j2: motion
     t7 = ca.cos(q[1])
     t8 = t3 * t2 + t7 * t6
     t9 = t7 * t2 - t3 * t6
@@ -1214,43 +1215,43 @@ def _inverse_dynamics_derivatives_standard(name: str) -> ca.Function:
     ZZ2 = parameters[15]  # kg m^2
     MX2 = parameters[16]  # kg m
     MY2 = parameters[17]  # kg m
-    t11 = t10 * ZZ2 + (t8 * MX2 + t9 * MY2)
-    t12 = dq[0] + dq[1]
+    t11 = t10 * ZZ2 + (t8 * MX2 + t9 * MY2) # link j2: force and moment
+    t12 = dq[0] + dq[1] # link j2: motion
     t13 = t12 * t12
-    t14 = t13 * MX2 + t10 * MY2
+    t14 = t13 * MX2 + t10 * MY2 # link j2: force and moment
     t15 = t10 * MX2 - t13 * MY2
     M2 = parameters[19]  # kg
-    t16 = t7 * (t8 * M2 + t15) - t3 * (t9 * M2 + t14)
+    t16 = t7 * (t8 * M2 + t15) - t3 * (t9 * M2 + t14) # link j2: what it passes on
     MY1 = parameters[7]  # kg m
     MX1 = parameters[6]  # kg m
     ZZ1 = parameters[5]  # kg m^2
     t17 = t1 * MY1 - t5 * MX1 + ddq[0] * ZZ1 + (t11 + 0.538534 * t16)
-    t18 = ca.sign(dq[0])
+    t18 = ca.sign(dq[0]) # joint j1: coulomb_friction
     FV1 = parameters[20]  # N m s/rad
     FC1 = parameters[21]  # N m
     out_input[0] = dq[0] * FV1 + t18 * FC1 + t17
-    t19 = ca.sign(dq[1])
+    t19 = ca.sign(dq[1]) # joint j2: coulomb_friction
     FV2 = parameters[22]  # N m s/rad
     FC2 = parameters[23]  # N m
     out_input[1] = dq[1] * FV2 + t19 * FC2 + t11
-    t20 = t7 * MX2 - t3 * MY2
-    t21 = 0.538534 * M2
-    t22 = t7 * MY2 + t3 * MX2
-    t23 = t1 * (MX1 + (t20 + t21)) + t5 * (MY1 + t22)
+    t20 = t7 * MX2 - t3 * MY2 # link j2: column of the mass matrix
+    t21 = 0.538534 * M2 # link j2: inertia of it and all beyond
+    t22 = t7 * MY2 + t3 * MX2 # link j2: column of the mass matrix
+    t23 = t1 * (MX1 + (t20 + t21)) + t5 * (MY1 + t22) # link j1: derivatives
     out_input_by_q[0] = t23
     out_input_by_q[2] = t5 * t22 + t1 * t20
     t24 = t12 * MY2
     t25 = t12 * MX2
-    t26 = -0.538534 * (t7 * t24 + t3 * t25) + t22 * (0.538534 * dq[0])
+    t26 = -0.538534 * (t7 * t24 + t3 * t25) + t22 * (0.538534 * dq[0]) # link j2: inertia, momentum beyond
     out_input_by_dq[0] = FV1 + 2.0 * t26
     out_input_by_dq[2] = t22 * (1.077068 * dq[0])
     out_input_by_ddq[0] = ZZ1 + (ZZ2 + 0.538534 * (t21 + 2.0 * t20))
-    t27 = ZZ2 + 0.538534 * t20
+    t27 = ZZ2 + 0.538534 * t20 # link j2: column of the mass matrix
     out_input_by_ddq[2] = t27
     t28 = t9 * MX2 - t8 * MY2
     out_input_by_q[1] = t28 + -0.538534 * (t3 * t15 + t7 * t14)
     out_input_by_q[3] = t28
-    t29 = 0.538534 * (t3 * (-2.0 * t25) + t7 * (-2.0 * t24))
+    t29 = 0.538534 * (t3 * (-2.0 * t25) + t7 * (-2.0 * t24)) # link j2: derivatives
     out_input_by_dq[1] = t29
     out_input_by_dq[3] = FV2
     out_input_by_ddq[1] = t27
@@ -1274,11 +1275,11 @@ def _forward_dynamics_derivatives_standard(name: str) -> ca.Function:
                                                       most 1e+09
     in   parameters    [24]                           standard parameters; norm at most 1e+09
     out  ddq           [2]   [rad/s^2]                joint accelerations
-    out  ddq_by_q      [4]   [(rad/s^2) per (rad)]    d ddq / d q; 2 x 2, row-major
+    out  ddq_by_q      [4]   [(rad/s^2) per rad]      d ddq / d q; 2 x 2, row-major
     out  ddq_by_dq     [4]   [(rad/s^2) per (rad/s)]  d ddq / d dq; 2 x 2, row-major
-    out  ddq_by_input  [4]   [(rad/s^2) per (N m)]    d ddq / d input; 2 x 2, row-major
+    out  ddq_by_input  [4]   [(rad/s^2) per N m]      d ddq / d input; 2 x 2, row-major
 
-    Operations: 140 (86 mul, 54 add, 0 neg), 2 div, 4 trig, 2 other.
+    Operations: 140 (86 mul, 54 add, 0 neg), 2 div, 4 trig, 2 other calls (sign, select and the like).
     """
     inputs = [ca.SX.sym("q", 2), ca.SX.sym("dq", 2), ca.SX.sym("input", 2), ca.SX.sym("parameters", 24)]
     [q, dq, input, parameters] = (ca.vertsplit(vector) for vector in inputs)
@@ -1291,36 +1292,36 @@ def _forward_dynamics_derivatives_standard(name: str) -> ca.Function:
     t1 = ca.cos(q[1])
     MY2 = parameters[17]  # kg m
     MX2 = parameters[16]  # kg m
-    t2 = t0 * MY2 - t1 * MX2
+    t2 = t0 * MY2 - t1 * MX2 # link j2: column of the mass matrix
     t3 = 0.538534 * t2 - ZZ2
     t4 = 1.0 / ZZ2
     t5 = t3 * t4
     M2 = parameters[19]  # kg
-    t6 = 0.538534 * M2
+    t6 = 0.538534 * M2 # link j2: inertia of it and all beyond
     ZZ1 = parameters[5]  # kg m^2
     t7 = ZZ1 + (ZZ2 + 0.538534 * (t6 + -2.0 * t2))
     t8 = t7 - t3 * t5
     t9 = t8 + -1e-09 * t7
     t10 = ca.cos(q[0])
-    t11 = -9.81 * t10
-    t12 = t11 + -0.538534 * (dq[0] * dq[0])
+    t11 = -9.81 * t10 # link j1: motion
+    t12 = t11 + -0.538534 * (dq[0] * dq[0]) # link j2: motion
     t13 = t1 * t12
     t14 = ca.sin(q[0])
-    t15 = -9.81 * t14
-    t16 = t0 * t15 - t13
+    t15 = -9.81 * t14 # link j1: motion
+    t16 = t0 * t15 - t13 # link j2: motion
     t17 = dq[0] + dq[1]
     t18 = t17 * t17
-    t19 = t18 * MX2
-    t20 = t0 * t12
+    t19 = t18 * MX2 # link j2: force and moment
+    t20 = t0 * t12 # link j2: motion
     t21 = t20 + t1 * t15
-    t22 = t18 * MY2
-    t23 = t0 * (M2 * t16 + t19) + t1 * (M2 * t21 + t22)
-    t24 = MX2 * t21 - MY2 * t16
+    t22 = t18 * MY2 # link j2: force and moment
+    t23 = t0 * (M2 * t16 + t19) + t1 * (M2 * t21 + t22) # link j2: what it passes on
+    t24 = MX2 * t21 - MY2 * t16 # link j2: force and moment
     MX1 = parameters[6]  # kg m
     MY1 = parameters[7]  # kg m
-    t25 = t15 * MX1 + t11 * MY1 + (t24 + 0.538534 * t23)
-    t26 = ca.sign(dq[0])
-    t27 = ca.sign(dq[1])
+    t25 = t15 * MX1 + t11 * MY1 + (t24 + 0.538534 * t23) # link j2: what it passes on
+    t26 = ca.sign(dq[0]) # joint j1: coulomb_friction
+    t27 = ca.sign(dq[1]) # joint j2: coulomb_friction
     FV2 = parameters[22]  # N m s/rad
     FC2 = parameters[23]  # N m
     t28 = input[1] - (dq[1] * FV2 + t27 * FC2 - t24)
@@ -1332,18 +1333,18 @@ def _forward_dynamics_derivatives_standard(name: str) -> ca.Function:
     out_ddq[0] = t31
     t32 = t28 * t4 + t5 * t31
     out_ddq[1] = t32
-    t33 = t1 * MY2 + t0 * MX2
-    t34 = t11 * (MX1 - (t2 - t6)) - t15 * (MY1 + t33)
-    t35 = t15 * t33 + t11 * t2
+    t33 = t1 * MY2 + t0 * MX2 # link j2: column of the mass matrix
+    t34 = t11 * (MX1 - (t2 - t6)) - t15 * (MY1 + t33) # link j1: derivatives
+    t35 = t15 * t33 + t11 * t2 # link j2: derivatives
     t36 = t5 * t30
     out_ddq_by_q[0] = t30 * t34 - t35 * t36
     t37 = t4 + t5 * t36
     out_ddq_by_q[2] = t34 * t36 - t35 * t37
     t38 = t17 * MY2
     t39 = t17 * MX2
-    t40 = 0.538534 * (t1 * t38 + t0 * t39) - t33 * (0.538534 * dq[0])
+    t40 = 0.538534 * (t1 * t38 + t0 * t39) - t33 * (0.538534 * dq[0]) # link j2: inertia, momentum beyond
     t41 = 2.0 * t40 - FV1
-    t42 = t33 * (1.077068 * dq[0])
+    t42 = t33 * (1.077068 * dq[0]) # link j2: derivatives
     out_ddq_by_dq[0] = t30 * t41 - t42 * t36
     out_ddq_by_dq[2] = t41 * t36 - t42 * t37
     out_ddq_by_input[0] = t30
@@ -1364,6 +1365,144 @@ def _forward_dynamics_derivatives_standard(name: str) -> ca.Function:
         _matrix(out_ddq_by_input, 2, 2)]
     names_in = ["q", "dq", "input", "parameters"]
     names_out = ["ddq", "ddq_by_q", "ddq_by_dq", "ddq_by_input"]
+    return ca.Function(name, inputs, outputs, names_in, names_out, {})
+
+
+def _momentum_observer_step(name: str) -> ca.Function:
+    """momentum_observer_step(q, dq, input, dt, gain, parameters, state) -> state_next, external
+
+    External efforts at the joints by the generalised momentum, with a delay of 1 / gain; state: zero at
+    first, then what the step before gave; base parameters.
+
+    in   q           [2]   [rad]       joint coordinates; norm at most 10000
+    in   dq          [2]   [rad/s]     joint velocities; norm at most 100000
+    in   input       [2]   [N m]       inputs: motor currents, efforts where undriven; norm at most 1e+09
+    in   dt          [1]   [s]         time step; norm at most 10000
+    in   gain        [2]   [1/s]       gains of the observer, gain dt below 1; norm at most 100000
+    in   parameters  [10]              base parameters; norm at most 1e+09
+    in   state       [2]   [kg m^2/s]  state of the observer: the momentum that the model expects; norm at most
+                                       1e+09
+    out  state_next  [2]   [kg m^2/s]  state after the step
+    out  external    [2]   [N m]       efforts that act on the arm from outside
+
+    Operations: 63 (34 mul, 27 add, 2 neg), 4 trig, 2 other calls (sign, select and the like).
+    """
+    inputs = [ca.SX.sym("q", 2), ca.SX.sym("dq", 2), ca.SX.sym("input", 2), ca.SX.sym("dt", 1),
+        ca.SX.sym("gain", 2), ca.SX.sym("parameters", 10), ca.SX.sym("state", 2)]
+    [q, dq, input, dt, gain, parameters, state] = (ca.vertsplit(vector) for vector in inputs)
+    out_state_next = [ca.SX(0)] * 2
+    out_external = [ca.SX(0)] * 2
+    t0 = dt[0] * gain[0] - 1.0
+    t1 = dt[0] * gain[1] - 1.0
+    t2 = ca.sin(q[0])
+    t3 = -9.81 * t2 # link j1: motion
+    t4 = ca.cos(q[1])
+    t5 = ca.cos(q[0])
+    t6 = -9.81 * t5
+    t7 = ca.sin(q[1])
+    MX2 = parameters[4]  # kg m
+    MY2 = parameters[5]  # kg m
+    t8 = MX2 * (t4 * t3 + t7 * t6) + MY2 * (t4 * t6 - t7 * t3) # link j2: force and moment
+    t9 = ca.sign(dq[0]) # joint j1: coulomb_friction
+    MX1R = parameters[1]  # kg m
+    MY1 = parameters[2]  # kg m
+    FV1 = parameters[6]  # N m s/rad
+    FC1 = parameters[7]  # N m
+    t10 = MX1R * t3 + MY1 * t6 + t8 - (FV1 * dq[0] + FC1 * t9)
+    t11 = dq[0] + dq[1] # link j2: motion
+    t12 = MY2 * t11
+    t13 = MX2 * t11
+    t14 = -0.538534 * dq[0] # link j2: velocity of its origin
+    t15 = t4 * t14
+    t16 = t7 * t14
+    ZZ2 = parameters[3]  # kg m^2
+    t17 = ZZ2 * t11 + (MY2 * t16 - MX2 * t15) # link j2: momentum
+    ZZ1R = parameters[0]  # kg m^2
+    t18 = ZZ1R * dq[0] + (0.538534 * (t4 * t13 - t7 * t12) + t17) # link j2: momentum of it and all beyond
+    t19 = gain[0] * (t18 - state[0])
+    out_state_next[0] = state[0] + dt[0] * (input[0] + t10 + t19)
+    t20 = ca.sign(dq[1]) # joint j2: coulomb_friction
+    FV2 = parameters[8]  # N m s/rad
+    FC2 = parameters[9]  # N m
+    t21 = input[1] + (t15 * t12 + t16 * t13) + (t8 - (FV2 * dq[1] + FC2 * t20))
+    t22 = gain[1] * (t17 - state[1])
+    out_state_next[1] = state[1] + dt[0] * (t21 + t22)
+    out_external[0] = t19
+    out_external[1] = t22
+    outputs = [_vector(out_state_next), _vector(out_external)]
+    names_in = ["q", "dq", "input", "dt", "gain", "parameters", "state"]
+    names_out = ["state_next", "external"]
+    return ca.Function(name, inputs, outputs, names_in, names_out, {})
+
+
+def _momentum_observer_step_standard(name: str) -> ca.Function:
+    """momentum_observer_step_standard(q, dq, input, dt, gain, parameters, state) -> state_next, external
+
+    External efforts at the joints by the generalised momentum, with a delay of 1 / gain; state: zero at
+    first, then what the step before gave; standard parameters.
+
+    in   q           [2]   [rad]       joint coordinates; norm at most 10000
+    in   dq          [2]   [rad/s]     joint velocities; norm at most 100000
+    in   input       [2]   [N m]       inputs: motor currents, efforts where undriven; norm at most 1e+09
+    in   dt          [1]   [s]         time step; norm at most 10000
+    in   gain        [2]   [1/s]       gains of the observer, gain dt below 1; norm at most 100000
+    in   parameters  [24]              standard parameters; norm at most 1e+09
+    in   state       [2]   [kg m^2/s]  state of the observer: the momentum that the model expects; norm at most
+                                       1e+09
+    out  state_next  [2]   [kg m^2/s]  state after the step
+    out  external    [2]   [N m]       efforts that act on the arm from outside
+
+    Operations: 74 (41 mul, 31 add, 2 neg), 4 trig, 2 other calls (sign, select and the like).
+    """
+    inputs = [ca.SX.sym("q", 2), ca.SX.sym("dq", 2), ca.SX.sym("input", 2), ca.SX.sym("dt", 1),
+        ca.SX.sym("gain", 2), ca.SX.sym("parameters", 24), ca.SX.sym("state", 2)]
+    [q, dq, input, dt, gain, parameters, state] = (ca.vertsplit(vector) for vector in inputs)
+    out_state_next = [ca.SX(0)] * 2
+    out_external = [ca.SX(0)] * 2
+    t0 = dt[0] * gain[0] - 1.0
+    t1 = dt[0] * gain[1] - 1.0
+    t2 = ca.cos(q[0])
+    t3 = -9.81 * t2 # link j1: motion
+    t4 = ca.sin(q[1])
+    t5 = ca.sin(q[0])
+    t6 = -9.81 * t5
+    t7 = ca.cos(q[1])
+    t8 = t4 * t3 + t7 * t6 # link j2: motion
+    t9 = t4 * t6 - t7 * t3
+    MX2 = parameters[16]  # kg m
+    MY2 = parameters[17]  # kg m
+    t10 = t8 * MX2 - t9 * MY2 # link j2: force and moment
+    M2 = parameters[19]  # kg
+    t11 = 0.538534 * (t4 * (t9 * M2) + t7 * (t8 * M2)) # link j2: what it passes on
+    t12 = ca.sign(dq[0]) # joint j1: coulomb_friction
+    MX1 = parameters[6]  # kg m
+    MY1 = parameters[7]  # kg m
+    FV1 = parameters[20]  # N m s/rad
+    FC1 = parameters[21]  # N m
+    t13 = t6 * MX1 + t3 * MY1 + (t10 + t11) - (dq[0] * FV1 + t12 * FC1)
+    t14 = dq[0] + dq[1] # link j2: motion
+    t15 = -0.538534 * dq[0] # link j2: velocity of its origin
+    t16 = t4 * t15
+    t17 = t14 * MY2 + M2 * t16 # link j2: momentum
+    t18 = t7 * t15 # link j2: velocity of its origin
+    t19 = t14 * MX2 - M2 * t18 # link j2: momentum
+    ZZ2 = parameters[15]  # kg m^2
+    t20 = t14 * ZZ2 + (MY2 * t16 - MX2 * t18)
+    ZZ1 = parameters[5]  # kg m^2
+    t21 = dq[0] * ZZ1 + (t20 + 0.538534 * (t7 * t19 - t4 * t17)) # link j2: momentum of it and all beyond
+    t22 = gain[0] * (t21 - state[0])
+    out_state_next[0] = state[0] + dt[0] * (input[0] + t13 + t22)
+    t23 = ca.sign(dq[1]) # joint j2: coulomb_friction
+    FV2 = parameters[22]  # N m s/rad
+    FC2 = parameters[23]  # N m
+    t24 = input[1] + (t18 * t17 + t16 * t19) + (t10 - (dq[1] * FV2 + t23 * FC2))
+    t25 = gain[1] * (t20 - state[1])
+    out_state_next[1] = state[1] + dt[0] * (t24 + t25)
+    out_external[0] = t22
+    out_external[1] = t25
+    outputs = [_vector(out_state_next), _vector(out_external)]
+    names_in = ["q", "dq", "input", "dt", "gain", "parameters", "state"]
+    names_out = ["state_next", "external"]
     return ca.Function(name, inputs, outputs, names_in, names_out, {})
 
 
@@ -1393,4 +1532,6 @@ _BUILDERS = {
     "gravity_arm_forward_dynamics_derivatives": _forward_dynamics_derivatives,
     "gravity_arm_inverse_dynamics_derivatives_standard": _inverse_dynamics_derivatives_standard,
     "gravity_arm_forward_dynamics_derivatives_standard": _forward_dynamics_derivatives_standard,
+    "gravity_arm_momentum_observer_step": _momentum_observer_step,
+    "gravity_arm_momentum_observer_step_standard": _momentum_observer_step_standard,
 }

@@ -83,18 +83,18 @@ def _inverse_dynamics(name: str) -> ca.Function:
     in   parameters  [5]             base parameters; norm at most 1e+09
     out  input       [1]  [N m]      inputs: motor currents, efforts where undriven
 
-    Operations: 11 (7 mul, 4 add, 0 neg), 2 trig, 1 other.
+    Operations: 11 (7 mul, 4 add, 0 neg), 2 trig, 1 other calls (sign, select and the like).
     """
     inputs = [ca.SX.sym("q", 1), ca.SX.sym("dq", 1), ca.SX.sym("ddq", 1), ca.SX.sym("parameters", 5)]
     [q, dq, ddq, parameters] = (ca.vertsplit(vector) for vector in inputs)
     out = [ca.SX(0)] * 1
-    t0 = ca.sign(dq[0])
+    t0 = ca.sign(dq[0]) # joint j1: coulomb_friction
     t1 = ca.sin(q[0])
     t2 = ca.cos(q[0])
     MX1R = parameters[1]  # kg m
     MY1R = parameters[2]  # kg m
     ZZ1R = parameters[0]  # kg m^2
-    t3 = MX1R * (9.81 * t1) + MY1R * (9.81 * t2) + ZZ1R * ddq[0]
+    t3 = MX1R * (9.81 * t1) + MY1R * (9.81 * t2) + ZZ1R * ddq[0] # link j1: force and moment
     FV1 = parameters[3]  # N m s/rad
     FC1 = parameters[4]  # N m
     out[0] = FV1 * dq[0] + FC1 * t0 + t3
@@ -139,12 +139,12 @@ def _bias(name: str) -> ca.Function:
     in   parameters  [5]           base parameters; norm at most 1e+09
     out  input       [1]  [N m]    inputs: motor currents, efforts where undriven
 
-    Operations: 9 (6 mul, 3 add, 0 neg), 2 trig, 1 other.
+    Operations: 9 (6 mul, 3 add, 0 neg), 2 trig, 1 other calls (sign, select and the like).
     """
     inputs = [ca.SX.sym("q", 1), ca.SX.sym("dq", 1), ca.SX.sym("parameters", 5)]
     [q, dq, parameters] = (ca.vertsplit(vector) for vector in inputs)
     out = [ca.SX(0)] * 1
-    t0 = ca.sign(dq[0])
+    t0 = ca.sign(dq[0]) # joint j1: coulomb_friction
     t1 = ca.sin(q[0])
     t2 = ca.cos(q[0])
     FV1 = parameters[3]  # N m s/rad
@@ -192,13 +192,13 @@ def _forward_dynamics(name: str) -> ca.Function:
     in   parameters  [5]             base parameters; norm at most 1e+09
     out  ddq         [1]  [rad/s^2]  joint accelerations
 
-    Operations: 11 (7 mul, 4 add, 0 neg), 1 div, 2 trig, 1 other.
+    Operations: 11 (7 mul, 4 add, 0 neg), 1 div, 2 trig, 1 other calls (sign, select and the like).
     """
     inputs = [ca.SX.sym("q", 1), ca.SX.sym("dq", 1), ca.SX.sym("input", 1), ca.SX.sym("parameters", 5)]
     [q, dq, input, parameters] = (ca.vertsplit(vector) for vector in inputs)
     out = [ca.SX(0)] * 1
     ZZ1R = parameters[0]  # kg m^2
-    t0 = ca.sign(dq[0])
+    t0 = ca.sign(dq[0]) # joint j1: coulomb_friction
     t1 = ca.sin(q[0])
     t2 = ca.cos(q[0])
     MX1R = parameters[1]  # kg m
@@ -258,7 +258,7 @@ def _regressor(name: str) -> ca.Function:
 
         0 ZZ1R, 1 MX1R, 2 MY1R, 3 FV1, 4 FC1
 
-    Operations: 2 (2 mul, 0 add, 0 neg), 2 trig, 1 other.
+    Operations: 2 (2 mul, 0 add, 0 neg), 2 trig, 1 other calls (sign, select and the like).
     """
     inputs = [ca.SX.sym("q", 1), ca.SX.sym("dq", 1), ca.SX.sym("ddq", 1)]
     [q, dq, ddq] = (ca.vertsplit(vector) for vector in inputs)
@@ -269,7 +269,7 @@ def _regressor(name: str) -> ca.Function:
     t1 = ca.cos(q[0])
     out[2] = 9.81 * t1
     out[3] = dq[0]
-    t2 = ca.sign(dq[0])
+    t2 = ca.sign(dq[0]) # joint j1: coulomb_friction
     out[4] = t2
     outputs = [_matrix(out, 1, 5)]
     names_in = ["q", "dq", "ddq"]
@@ -293,26 +293,26 @@ def _regressor_standard(name: str) -> ca.Function:
         0 XX1, 1 XY1, 2 XZ1, 3 YY1, 4 YZ1, 5 ZZ1, 6 MX1, 7 MY1, 8 MZ1, 9 M1, 10 XX2, 11 XY2, 12 XZ2, 13 YY2,
         14 YZ2, 15 ZZ2, 16 MX2, 17 MY2, 18 MZ2, 19 M2, 20 FV1, 21 FC1
 
-    Operations: 6 (4 mul, 2 add, 0 neg), 2 trig, 1 other.
+    Operations: 6 (4 mul, 2 add, 0 neg), 2 trig, 1 other calls (sign, select and the like).
     """
     inputs = [ca.SX.sym("q", 1), ca.SX.sym("dq", 1), ca.SX.sym("ddq", 1)]
     [q, dq, ddq] = (ca.vertsplit(vector) for vector in inputs)
     out = [ca.SX(0)] * 22
     out[5] = ddq[0]
     t0 = ca.sin(q[0])
-    t1 = 9.81 * t0
+    t1 = 9.81 * t0 # link j1: motion
     out[6] = t1
     t2 = ca.cos(q[0])
     t3 = 9.81 * t2
     out[7] = t3
     out[15] = ddq[0]
-    t4 = 0.538534 * ddq[0]
+    t4 = 0.538534 * ddq[0] # link j2: motion
     t5 = t1 + t4
     out[16] = t4 + t5
     out[17] = t3
     out[19] = 0.538534 * t5
     out[20] = dq[0]
-    t6 = ca.sign(dq[0])
+    t6 = ca.sign(dq[0]) # joint j1: coulomb_friction
     out[21] = t6
     outputs = [_matrix(out, 1, 22)]
     names_in = ["q", "dq", "ddq"]
@@ -334,7 +334,7 @@ def _regressor_packed(name: str) -> ca.Function:
 
         0 ZZ1R, 1 MX1R, 2 MY1R, 3 FV1, 4 FC1
 
-    Operations: 2 (2 mul, 0 add, 0 neg), 2 trig, 1 other.
+    Operations: 2 (2 mul, 0 add, 0 neg), 2 trig, 1 other calls (sign, select and the like).
     """
     inputs = [ca.SX.sym("q", 1), ca.SX.sym("dq", 1), ca.SX.sym("ddq", 1)]
     [q, dq, ddq] = (ca.vertsplit(vector) for vector in inputs)
@@ -345,7 +345,7 @@ def _regressor_packed(name: str) -> ca.Function:
     t1 = ca.cos(q[0])
     out[2] = 9.81 * t1
     out[3] = dq[0]
-    t2 = ca.sign(dq[0])
+    t2 = ca.sign(dq[0]) # joint j1: coulomb_friction
     out[4] = t2
     outputs = [_vector(out)]
     names_in = ["q", "dq", "ddq"]
@@ -369,7 +369,7 @@ def _slotine_li_regressor(name: str) -> ca.Function:
 
         0 ZZ1R, 1 MX1R, 2 MY1R, 3 FV1, 4 FC1
 
-    Operations: 2 (2 mul, 0 add, 0 neg), 2 trig, 1 other.
+    Operations: 2 (2 mul, 0 add, 0 neg), 2 trig, 1 other calls (sign, select and the like).
     """
     inputs = [ca.SX.sym("q", 1), ca.SX.sym("dq", 1), ca.SX.sym("dq_r", 1), ca.SX.sym("ddq_r", 1)]
     [q, dq, dq_r, ddq_r] = (ca.vertsplit(vector) for vector in inputs)
@@ -380,7 +380,7 @@ def _slotine_li_regressor(name: str) -> ca.Function:
     t1 = ca.cos(q[0])
     out[2] = 9.81 * t1
     out[3] = dq[0]
-    t2 = ca.sign(dq[0])
+    t2 = ca.sign(dq[0]) # joint j1: coulomb_friction
     out[4] = t2
     outputs = [_matrix(out, 1, 5)]
     names_in = ["q", "dq", "dq_r", "ddq_r"]
@@ -399,28 +399,28 @@ def _inverse_dynamics_standard(name: str) -> ca.Function:
     in   parameters  [22]             standard parameters; norm at most 1e+09
     out  input       [1]   [N m]      inputs: motor currents, efforts where undriven
 
-    Operations: 29 (17 mul, 12 add, 0 neg), 2 trig, 1 other.
+    Operations: 29 (17 mul, 12 add, 0 neg), 2 trig, 1 other calls (sign, select and the like).
     """
     inputs = [ca.SX.sym("q", 1), ca.SX.sym("dq", 1), ca.SX.sym("ddq", 1), ca.SX.sym("parameters", 22)]
     [q, dq, ddq, parameters] = (ca.vertsplit(vector) for vector in inputs)
     out = [ca.SX(0)] * 1
     t0 = ca.cos(q[0])
-    t1 = 9.81 * t0
+    t1 = 9.81 * t0 # link j1: motion
     t2 = dq[0] * dq[0]
     t3 = ca.sin(q[0])
     t4 = 9.81 * t3
-    t5 = t4 + 0.538534 * ddq[0]
+    t5 = t4 + 0.538534 * ddq[0] # link j2: motion
     ZZ2 = parameters[15]  # kg m^2
     MY2 = parameters[17]  # kg m
     MX2 = parameters[16]  # kg m
-    t6 = ddq[0] * ZZ2 + ((t1 + 0.538534 * t2) * MY2 + t5 * MX2)
+    t6 = ddq[0] * ZZ2 + ((t1 + 0.538534 * t2) * MY2 + t5 * MX2) # link j2: force and moment
     M2 = parameters[19]  # kg
-    t7 = 0.538534 * (t5 * M2 + (ddq[0] * MX2 - t2 * MY2))
+    t7 = 0.538534 * (t5 * M2 + (ddq[0] * MX2 - t2 * MY2)) # link j2: what it passes on
     MX1 = parameters[6]  # kg m
     MY1 = parameters[7]  # kg m
     ZZ1 = parameters[5]  # kg m^2
     t8 = t4 * MX1 + t1 * MY1 + ddq[0] * ZZ1 + (t6 + t7)
-    t9 = ca.sign(dq[0])
+    t9 = ca.sign(dq[0]) # joint j1: coulomb_friction
     FV1 = parameters[20]  # N m s/rad
     FC1 = parameters[21]  # N m
     out[0] = dq[0] * FV1 + t9 * FC1 + t8
@@ -445,13 +445,13 @@ def _gravity_standard(name: str) -> ca.Function:
     [q, parameters] = (ca.vertsplit(vector) for vector in inputs)
     out = [ca.SX(0)] * 1
     t0 = ca.sin(q[0])
-    t1 = 9.81 * t0
+    t1 = 9.81 * t0 # link j1: motion
     t2 = ca.cos(q[0])
     t3 = 9.81 * t2
     MX2 = parameters[16]  # kg m
     MY2 = parameters[17]  # kg m
     M2 = parameters[19]  # kg
-    t4 = t1 * MX2 + t3 * MY2 + 0.538534 * (t1 * M2)
+    t4 = t1 * MX2 + t3 * MY2 + 0.538534 * (t1 * M2) # link j2: what it passes on
     MX1 = parameters[6]  # kg m
     MY1 = parameters[7]  # kg m
     out[0] = t1 * MX1 + t3 * MY1 + t4
@@ -471,21 +471,21 @@ def _bias_standard(name: str) -> ca.Function:
     in   parameters  [22]           standard parameters; norm at most 1e+09
     out  input       [1]   [N m]    inputs: motor currents, efforts where undriven
 
-    Operations: 21 (13 mul, 8 add, 0 neg), 2 trig, 1 other.
+    Operations: 21 (13 mul, 8 add, 0 neg), 2 trig, 1 other calls (sign, select and the like).
     """
     inputs = [ca.SX.sym("q", 1), ca.SX.sym("dq", 1), ca.SX.sym("parameters", 22)]
     [q, dq, parameters] = (ca.vertsplit(vector) for vector in inputs)
     out = [ca.SX(0)] * 1
     t0 = ca.cos(q[0])
-    t1 = 9.81 * t0
+    t1 = 9.81 * t0 # link j1: motion
     t2 = dq[0] * dq[0]
     t3 = ca.sin(q[0])
     t4 = 9.81 * t3
     MX2 = parameters[16]  # kg m
     MY2 = parameters[17]  # kg m
     M2 = parameters[19]  # kg
-    t5 = t4 * MX2 + (t1 + 0.538534 * t2) * MY2 + 0.538534 * (t4 * M2 - t2 * MY2)
-    t6 = ca.sign(dq[0])
+    t5 = t4 * MX2 + (t1 + 0.538534 * t2) * MY2 + 0.538534 * (t4 * M2 - t2 * MY2) # link j2: what it passes on
+    t6 = ca.sign(dq[0]) # joint j1: coulomb_friction
     FV1 = parameters[20]  # N m s/rad
     FC1 = parameters[21]  # N m
     MX1 = parameters[6]  # kg m
@@ -516,7 +516,7 @@ def _mass_matrix_standard(name: str) -> ca.Function:
     ZZ2 = parameters[15]  # kg m^2
     M2 = parameters[19]  # kg
     MX2 = parameters[16]  # kg m
-    t0 = ZZ1 + (ZZ2 + 0.538534 * (0.538534 * M2 + 2.0 * MX2))
+    t0 = ZZ1 + (ZZ2 + 0.538534 * (0.538534 * M2 + 2.0 * MX2)) # link j2: inertia of it and all beyond
     out[0] = t0
     outputs = [_vector(out)]
     names_in = ["q", "parameters"]
@@ -535,7 +535,7 @@ def _forward_dynamics_standard(name: str) -> ca.Function:
     in   parameters  [22]             standard parameters; norm at most 1e+09
     out  ddq         [1]   [rad/s^2]  joint accelerations
 
-    Operations: 29 (17 mul, 12 add, 0 neg), 1 div, 2 trig, 1 other.
+    Operations: 29 (17 mul, 12 add, 0 neg), 1 div, 2 trig, 1 other calls (sign, select and the like).
     """
     inputs = [ca.SX.sym("q", 1), ca.SX.sym("dq", 1), ca.SX.sym("input", 1), ca.SX.sym("parameters", 22)]
     [q, dq, input, parameters] = (ca.vertsplit(vector) for vector in inputs)
@@ -544,15 +544,15 @@ def _forward_dynamics_standard(name: str) -> ca.Function:
     ZZ2 = parameters[15]  # kg m^2
     M2 = parameters[19]  # kg
     MX2 = parameters[16]  # kg m
-    t0 = ZZ1 + (ZZ2 + 0.538534 * (0.538534 * M2 + 2.0 * MX2))
+    t0 = ZZ1 + (ZZ2 + 0.538534 * (0.538534 * M2 + 2.0 * MX2)) # link j2: inertia of it and all beyond
     t1 = ca.cos(q[0])
-    t2 = -9.81 * t1
+    t2 = -9.81 * t1 # link j1: motion
     t3 = dq[0] * dq[0]
     t4 = ca.sin(q[0])
     t5 = -9.81 * t4
     MY2 = parameters[17]  # kg m
-    t6 = t5 * MX2 + (t2 + -0.538534 * t3) * MY2 + 0.538534 * (t5 * M2 + t3 * MY2)
-    t7 = ca.sign(dq[0])
+    t6 = t5 * MX2 + (t2 + -0.538534 * t3) * MY2 + 0.538534 * (t5 * M2 + t3 * MY2) # link j2: what it passes on
+    t7 = ca.sign(dq[0]) # joint j1: coulomb_friction
     MX1 = parameters[6]  # kg m
     MY1 = parameters[7]  # kg m
     FV1 = parameters[20]  # N m s/rad
@@ -583,7 +583,7 @@ def _energy_standard(name: str) -> ca.Function:
     [q, dq, parameters] = (ca.vertsplit(vector) for vector in inputs)
     out_kinetic = [ca.SX(0)] * 1
     out_potential = [ca.SX(0)] * 1
-    t0 = 0.538534 * dq[0]
+    t0 = 0.538534 * dq[0] # link j2: velocity of its origin
     ZZ2 = parameters[15]  # kg m^2
     M2 = parameters[19]  # kg
     t1 = 0.5 * (dq[0] * (dq[0] * ZZ2) + M2 * (t0 * t0))
@@ -592,7 +592,7 @@ def _energy_standard(name: str) -> ca.Function:
     t2 = 0.5 * (dq[0] * (dq[0] * ZZ1)) + t1 + MX2 * (dq[0] * t0)
     out_kinetic[0] = t2
     t3 = ca.cos(q[0])
-    t4 = -9.81 * t3
+    t4 = -9.81 * t3 # link j1: motion
     t5 = ca.sin(q[0])
     t6 = 9.81 * t5
     MY2 = parameters[17]  # kg m
@@ -728,8 +728,8 @@ def _drive_gain(name: str) -> ca.Function:
 
     Joint effort per input.
 
-    in   q     [1]  [rad]              joint coordinates; norm at most 10000
-    out  gain  [1]  [(N m) per (N m)]  drive gains K
+    in   q     [1]  [rad]          joint coordinates; norm at most 10000
+    out  gain  [1]  [N m per N m]  drive gains K
 
     Operations: 0 (0 mul, 0 add, 0 neg).
     """
@@ -749,16 +749,16 @@ def _inverse_dynamics_derivatives(name: str) -> ca.Function:
     Inputs that give the accelerations ddq, and their derivatives; at a kink of a law, as of dry
     friction at rest, the mean of both sides; base parameters.
 
-    in   q             [1]  [rad]                  joint coordinates; norm at most 10000
-    in   dq            [1]  [rad/s]                joint velocities; norm at most 100000
-    in   ddq           [1]  [rad/s^2]              joint accelerations; norm at most 1e+08
-    in   parameters    [5]                         base parameters; norm at most 1e+09
-    out  input         [1]  [N m]                  inputs: motor currents, efforts where undriven
-    out  input_by_q    [1]  [(N m) per (rad)]      d input / d q
-    out  input_by_dq   [1]  [(N m) per (rad/s)]    d input / d dq
-    out  input_by_ddq  [1]  [(N m) per (rad/s^2)]  d input / d ddq
+    in   q             [1]  [rad]                joint coordinates; norm at most 10000
+    in   dq            [1]  [rad/s]              joint velocities; norm at most 100000
+    in   ddq           [1]  [rad/s^2]            joint accelerations; norm at most 1e+08
+    in   parameters    [5]                       base parameters; norm at most 1e+09
+    out  input         [1]  [N m]                inputs: motor currents, efforts where undriven
+    out  input_by_q    [1]  [N m per rad]        d input / d q
+    out  input_by_dq   [1]  [N m per (rad/s)]    d input / d dq
+    out  input_by_ddq  [1]  [N m per (rad/s^2)]  d input / d ddq
 
-    Operations: 14 (9 mul, 5 add, 0 neg), 2 trig, 1 other.
+    Operations: 14 (9 mul, 5 add, 0 neg), 2 trig, 1 other calls (sign, select and the like).
     """
     inputs = [ca.SX.sym("q", 1), ca.SX.sym("dq", 1), ca.SX.sym("ddq", 1), ca.SX.sym("parameters", 5)]
     [q, dq, ddq, parameters] = (ca.vertsplit(vector) for vector in inputs)
@@ -766,9 +766,9 @@ def _inverse_dynamics_derivatives(name: str) -> ca.Function:
     out_input_by_q = [ca.SX(0)] * 1
     out_input_by_dq = [ca.SX(0)] * 1
     out_input_by_ddq = [ca.SX(0)] * 1
-    t0 = ca.sign(dq[0])
+    t0 = ca.sign(dq[0]) # joint j1: coulomb_friction
     t1 = ca.sin(q[0])
-    t2 = 9.81 * t1
+    t2 = 9.81 * t1 # link j1: motion
     t3 = ca.cos(q[0])
     t4 = 9.81 * t3
     FV1 = parameters[3]  # N m s/rad
@@ -800,11 +800,11 @@ def _forward_dynamics_derivatives(name: str) -> ca.Function:
                                                      most 1e+09
     in   parameters    [5]                           base parameters; norm at most 1e+09
     out  ddq           [1]  [rad/s^2]                joint accelerations
-    out  ddq_by_q      [1]  [(rad/s^2) per (rad)]    d ddq / d q
+    out  ddq_by_q      [1]  [(rad/s^2) per rad]      d ddq / d q
     out  ddq_by_dq     [1]  [(rad/s^2) per (rad/s)]  d ddq / d dq
-    out  ddq_by_input  [1]  [(rad/s^2) per (N m)]    d ddq / d input
+    out  ddq_by_input  [1]  [(rad/s^2) per N m]      d ddq / d input
 
-    Operations: 17 (11 mul, 5 add, 1 neg), 1 div, 2 trig, 1 other.
+    Operations: 17 (11 mul, 5 add, 1 neg), 1 div, 2 trig, 1 other calls (sign, select and the like).
     """
     inputs = [ca.SX.sym("q", 1), ca.SX.sym("dq", 1), ca.SX.sym("input", 1), ca.SX.sym("parameters", 5)]
     [q, dq, input, parameters] = (ca.vertsplit(vector) for vector in inputs)
@@ -813,9 +813,9 @@ def _forward_dynamics_derivatives(name: str) -> ca.Function:
     out_ddq_by_dq = [ca.SX(0)] * 1
     out_ddq_by_input = [ca.SX(0)] * 1
     ZZ1R = parameters[0]  # kg m^2
-    t0 = ca.sign(dq[0])
+    t0 = ca.sign(dq[0]) # joint j1: coulomb_friction
     t1 = ca.sin(q[0])
-    t2 = 9.81 * t1
+    t2 = 9.81 * t1 # link j1: motion
     t3 = ca.cos(q[0])
     t4 = -9.81 * t3
     MY1R = parameters[2]  # kg m
@@ -840,16 +840,16 @@ def _inverse_dynamics_derivatives_standard(name: str) -> ca.Function:
     Inputs that give the accelerations ddq, and their derivatives; at a kink of a law, as of dry
     friction at rest, the mean of both sides; standard parameters.
 
-    in   q             [1]   [rad]                  joint coordinates; norm at most 10000
-    in   dq            [1]   [rad/s]                joint velocities; norm at most 100000
-    in   ddq           [1]   [rad/s^2]              joint accelerations; norm at most 1e+08
-    in   parameters    [22]                         standard parameters; norm at most 1e+09
-    out  input         [1]   [N m]                  inputs: motor currents, efforts where undriven
-    out  input_by_q    [1]   [(N m) per (rad)]      d input / d q
-    out  input_by_dq   [1]   [(N m) per (rad/s)]    d input / d dq
-    out  input_by_ddq  [1]   [(N m) per (rad/s^2)]  d input / d ddq
+    in   q             [1]   [rad]                joint coordinates; norm at most 10000
+    in   dq            [1]   [rad/s]              joint velocities; norm at most 100000
+    in   ddq           [1]   [rad/s^2]            joint accelerations; norm at most 1e+08
+    in   parameters    [22]                       standard parameters; norm at most 1e+09
+    out  input         [1]   [N m]                inputs: motor currents, efforts where undriven
+    out  input_by_q    [1]   [N m per rad]        d input / d q
+    out  input_by_dq   [1]   [N m per (rad/s)]    d input / d dq
+    out  input_by_ddq  [1]   [N m per (rad/s^2)]  d input / d ddq
 
-    Operations: 48 (27 mul, 21 add, 0 neg), 2 trig, 1 other.
+    Operations: 48 (27 mul, 21 add, 0 neg), 2 trig, 1 other calls (sign, select and the like).
     """
     inputs = [ca.SX.sym("q", 1), ca.SX.sym("dq", 1), ca.SX.sym("ddq", 1), ca.SX.sym("parameters", 22)]
     [q, dq, ddq, parameters] = (ca.vertsplit(vector) for vector in inputs)
@@ -858,27 +858,27 @@ def _inverse_dynamics_derivatives_standard(name: str) -> ca.Function:
     out_input_by_dq = [ca.SX(0)] * 1
     out_input_by_ddq = [ca.SX(0)] * 1
     t0 = ca.cos(q[0])
-    t1 = 9.81 * t0
+    t1 = 9.81 * t0 # link j1: motion
     t2 = dq[0] * dq[0]
     t3 = ca.sin(q[0])
     t4 = 9.81 * t3
-    t5 = t4 + 0.538534 * ddq[0]
+    t5 = t4 + 0.538534 * ddq[0] # link j2: motion
     ZZ2 = parameters[15]  # kg m^2
     MY2 = parameters[17]  # kg m
     MX2 = parameters[16]  # kg m
-    t6 = ddq[0] * ZZ2 + ((t1 + 0.538534 * t2) * MY2 + t5 * MX2)
+    t6 = ddq[0] * ZZ2 + ((t1 + 0.538534 * t2) * MY2 + t5 * MX2) # link j2: force and moment
     M2 = parameters[19]  # kg
-    t7 = 0.538534 * (t5 * M2 + (ddq[0] * MX2 - t2 * MY2))
+    t7 = 0.538534 * (t5 * M2 + (ddq[0] * MX2 - t2 * MY2)) # link j2: what it passes on
     MX1 = parameters[6]  # kg m
     MY1 = parameters[7]  # kg m
     ZZ1 = parameters[5]  # kg m^2
     t8 = t4 * MX1 + t1 * MY1 + ddq[0] * ZZ1 + (t6 + t7)
-    t9 = ca.sign(dq[0])
+    t9 = ca.sign(dq[0]) # joint j1: coulomb_friction
     FV1 = parameters[20]  # N m s/rad
     FC1 = parameters[21]  # N m
     out_input[0] = dq[0] * FV1 + t9 * FC1 + t8
-    t10 = 0.538534 * M2
-    t11 = t1 * (MX1 + (MX2 + t10)) - t4 * (MY1 + MY2)
+    t10 = 0.538534 * M2 # link j2: inertia of it and all beyond
+    t11 = t1 * (MX1 + (MX2 + t10)) - t4 * (MY1 + MY2) # link j1: derivatives
     out_input_by_q[0] = t11
     t12 = 2.0 * (-0.538534 * (dq[0] * MY2) + MY2 * (0.538534 * dq[0]))
     out_input_by_dq[0] = FV1 + t12
@@ -902,11 +902,11 @@ def _forward_dynamics_derivatives_standard(name: str) -> ca.Function:
                                                       most 1e+09
     in   parameters    [22]                           standard parameters; norm at most 1e+09
     out  ddq           [1]   [rad/s^2]                joint accelerations
-    out  ddq_by_q      [1]   [(rad/s^2) per (rad)]    d ddq / d q
+    out  ddq_by_q      [1]   [(rad/s^2) per rad]      d ddq / d q
     out  ddq_by_dq     [1]   [(rad/s^2) per (rad/s)]  d ddq / d dq
-    out  ddq_by_input  [1]   [(rad/s^2) per (N m)]    d ddq / d input
+    out  ddq_by_input  [1]   [(rad/s^2) per N m]      d ddq / d input
 
-    Operations: 44 (26 mul, 18 add, 0 neg), 1 div, 2 trig, 1 other.
+    Operations: 44 (26 mul, 18 add, 0 neg), 1 div, 2 trig, 1 other calls (sign, select and the like).
     """
     inputs = [ca.SX.sym("q", 1), ca.SX.sym("dq", 1), ca.SX.sym("input", 1), ca.SX.sym("parameters", 22)]
     [q, dq, input, parameters] = (ca.vertsplit(vector) for vector in inputs)
@@ -915,19 +915,19 @@ def _forward_dynamics_derivatives_standard(name: str) -> ca.Function:
     out_ddq_by_dq = [ca.SX(0)] * 1
     out_ddq_by_input = [ca.SX(0)] * 1
     M2 = parameters[19]  # kg
-    t0 = 0.538534 * M2
+    t0 = 0.538534 * M2 # link j2: inertia of it and all beyond
     ZZ1 = parameters[5]  # kg m^2
     ZZ2 = parameters[15]  # kg m^2
     MX2 = parameters[16]  # kg m
     t1 = ZZ1 + (ZZ2 + 0.538534 * (t0 + 2.0 * MX2))
     t2 = ca.cos(q[0])
-    t3 = -9.81 * t2
+    t3 = -9.81 * t2 # link j1: motion
     t4 = dq[0] * dq[0]
     t5 = ca.sin(q[0])
     t6 = -9.81 * t5
     MY2 = parameters[17]  # kg m
-    t7 = t6 * MX2 + (t3 + -0.538534 * t4) * MY2 + 0.538534 * (t6 * M2 + t4 * MY2)
-    t8 = ca.sign(dq[0])
+    t7 = t6 * MX2 + (t3 + -0.538534 * t4) * MY2 + 0.538534 * (t6 * M2 + t4 * MY2) # link j2: what it passes on
+    t8 = ca.sign(dq[0]) # joint j1: coulomb_friction
     MX1 = parameters[6]  # kg m
     MY1 = parameters[7]  # kg m
     FV1 = parameters[20]  # N m s/rad
@@ -935,7 +935,7 @@ def _forward_dynamics_derivatives_standard(name: str) -> ca.Function:
     t9 = t6 * MX1 + t3 * MY1 + t7 - (dq[0] * FV1 + t8 * FC1)
     t10 = 1.0 / t1
     out_ddq[0] = (input[0] + t9) * t10
-    t11 = t3 * (MX1 + (MX2 + t0)) - t6 * (MY1 + MY2)
+    t11 = t3 * (MX1 + (MX2 + t0)) - t6 * (MY1 + MY2) # link j1: derivatives
     out_ddq_by_q[0] = t10 * t11
     t12 = 2.0 * (0.538534 * (dq[0] * MY2) + MY2 * (-0.538534 * dq[0]))
     out_ddq_by_dq[0] = t10 * (t12 - FV1)
@@ -943,6 +943,101 @@ def _forward_dynamics_derivatives_standard(name: str) -> ca.Function:
     outputs = [_vector(out_ddq), _vector(out_ddq_by_q), _vector(out_ddq_by_dq), _vector(out_ddq_by_input)]
     names_in = ["q", "dq", "input", "parameters"]
     names_out = ["ddq", "ddq_by_q", "ddq_by_dq", "ddq_by_input"]
+    return ca.Function(name, inputs, outputs, names_in, names_out, {})
+
+
+def _momentum_observer_step(name: str) -> ca.Function:
+    """momentum_observer_step(q, dq, input, dt, gain, parameters, state) -> state_next, external
+
+    External efforts at the joints by the generalised momentum, with a delay of 1 / gain; state: zero at
+    first, then what the step before gave; base parameters.
+
+    in   q           [1]  [rad]       joint coordinates; norm at most 10000
+    in   dq          [1]  [rad/s]     joint velocities; norm at most 100000
+    in   input       [1]  [N m]       inputs: motor currents, efforts where undriven; norm at most 1e+09
+    in   dt          [1]  [s]         time step; norm at most 10000
+    in   gain        [1]  [1/s]       gains of the observer, gain dt below 1; norm at most 100000
+    in   parameters  [5]              base parameters; norm at most 1e+09
+    in   state       [1]  [kg m^2/s]  state of the observer: the momentum that the model expects; norm at most
+                                      1e+09
+    out  state_next  [1]  [kg m^2/s]  state after the step
+    out  external    [1]  [N m]       efforts that act on the arm from outside
+
+    Operations: 19 (10 mul, 8 add, 1 neg), 2 trig, 1 other calls (sign, select and the like).
+    """
+    inputs = [ca.SX.sym("q", 1), ca.SX.sym("dq", 1), ca.SX.sym("input", 1), ca.SX.sym("dt", 1),
+        ca.SX.sym("gain", 1), ca.SX.sym("parameters", 5), ca.SX.sym("state", 1)]
+    [q, dq, input, dt, gain, parameters, state] = (ca.vertsplit(vector) for vector in inputs)
+    out_state_next = [ca.SX(0)] * 1
+    out_external = [ca.SX(0)] * 1
+    t0 = dt[0] * gain[0] - 1.0
+    t1 = ca.sign(dq[0]) # joint j1: coulomb_friction
+    t2 = ca.sin(q[0])
+    t3 = ca.cos(q[0])
+    MX1R = parameters[1]  # kg m
+    MY1R = parameters[2]  # kg m
+    FV1 = parameters[3]  # N m s/rad
+    FC1 = parameters[4]  # N m
+    t4 = MX1R * (-9.81 * t2) + MY1R * (-9.81 * t3) - (FV1 * dq[0] + FC1 * t1)
+    ZZ1R = parameters[0]  # kg m^2
+    t5 = gain[0] * (ZZ1R * dq[0] - state[0])
+    out_state_next[0] = state[0] + dt[0] * (input[0] + t4 + t5)
+    out_external[0] = t5
+    outputs = [_vector(out_state_next), _vector(out_external)]
+    names_in = ["q", "dq", "input", "dt", "gain", "parameters", "state"]
+    names_out = ["state_next", "external"]
+    return ca.Function(name, inputs, outputs, names_in, names_out, {})
+
+
+def _momentum_observer_step_standard(name: str) -> ca.Function:
+    """momentum_observer_step_standard(q, dq, input, dt, gain, parameters, state) -> state_next, external
+
+    External efforts at the joints by the generalised momentum, with a delay of 1 / gain; state: zero at
+    first, then what the step before gave; standard parameters.
+
+    in   q           [1]   [rad]       joint coordinates; norm at most 10000
+    in   dq          [1]   [rad/s]     joint velocities; norm at most 100000
+    in   input       [1]   [N m]       inputs: motor currents, efforts where undriven; norm at most 1e+09
+    in   dt          [1]   [s]         time step; norm at most 10000
+    in   gain        [1]   [1/s]       gains of the observer, gain dt below 1; norm at most 100000
+    in   parameters  [22]              standard parameters; norm at most 1e+09
+    in   state       [1]   [kg m^2/s]  state of the observer: the momentum that the model expects; norm at most
+                                       1e+09
+    out  state_next  [1]   [kg m^2/s]  state after the step
+    out  external    [1]   [N m]       efforts that act on the arm from outside
+
+    Operations: 36 (20 mul, 15 add, 1 neg), 2 trig, 1 other calls (sign, select and the like).
+    """
+    inputs = [ca.SX.sym("q", 1), ca.SX.sym("dq", 1), ca.SX.sym("input", 1), ca.SX.sym("dt", 1),
+        ca.SX.sym("gain", 1), ca.SX.sym("parameters", 22), ca.SX.sym("state", 1)]
+    [q, dq, input, dt, gain, parameters, state] = (ca.vertsplit(vector) for vector in inputs)
+    out_state_next = [ca.SX(0)] * 1
+    out_external = [ca.SX(0)] * 1
+    t0 = dt[0] * gain[0] - 1.0
+    t1 = ca.sin(q[0])
+    t2 = -9.81 * t1 # link j1: motion
+    t3 = ca.cos(q[0])
+    t4 = -9.81 * t3
+    MX2 = parameters[16]  # kg m
+    MY2 = parameters[17]  # kg m
+    M2 = parameters[19]  # kg
+    t5 = t2 * MX2 + t4 * MY2 + 0.538534 * (t2 * M2) # link j2: what it passes on
+    t6 = ca.sign(dq[0]) # joint j1: coulomb_friction
+    MX1 = parameters[6]  # kg m
+    MY1 = parameters[7]  # kg m
+    FV1 = parameters[20]  # N m s/rad
+    FC1 = parameters[21]  # N m
+    t7 = t2 * MX1 + t4 * MY1 + t5 - (dq[0] * FV1 + t6 * FC1)
+    t8 = 0.538534 * dq[0] # link j2: velocity of its origin
+    ZZ2 = parameters[15]  # kg m^2
+    t9 = dq[0] * ZZ2 + MX2 * t8 + 0.538534 * (dq[0] * MX2 + M2 * t8) # link j2: momentum of it and all beyond
+    ZZ1 = parameters[5]  # kg m^2
+    t10 = gain[0] * (dq[0] * ZZ1 + t9 - state[0])
+    out_state_next[0] = state[0] + dt[0] * (input[0] + t7 + t10)
+    out_external[0] = t10
+    outputs = [_vector(out_state_next), _vector(out_external)]
+    names_in = ["q", "dq", "input", "dt", "gain", "parameters", "state"]
+    names_out = ["state_next", "external"]
     return ca.Function(name, inputs, outputs, names_in, names_out, {})
 
 
@@ -972,4 +1067,6 @@ _BUILDERS = {
     "gravity_link1_loaded_forward_dynamics_derivatives": _forward_dynamics_derivatives,
     "gravity_link1_loaded_inverse_dynamics_derivatives_standard": _inverse_dynamics_derivatives_standard,
     "gravity_link1_loaded_forward_dynamics_derivatives_standard": _forward_dynamics_derivatives_standard,
+    "gravity_link1_loaded_momentum_observer_step": _momentum_observer_step,
+    "gravity_link1_loaded_momentum_observer_step_standard": _momentum_observer_step_standard,
 }

@@ -83,18 +83,18 @@ def _inverse_dynamics(name: str) -> ca.Function:
     in   parameters  [5]             base parameters; norm at most 1e+09
     out  input       [1]  [N m]      inputs: motor currents, efforts where undriven
 
-    Operations: 11 (7 mul, 4 add, 0 neg), 2 trig, 1 other.
+    Operations: 11 (7 mul, 4 add, 0 neg), 2 trig, 1 other calls (sign, select and the like).
     """
     inputs = [ca.SX.sym("q", 1), ca.SX.sym("dq", 1), ca.SX.sym("ddq", 1), ca.SX.sym("parameters", 5)]
     [q, dq, ddq, parameters] = (ca.vertsplit(vector) for vector in inputs)
     out = [ca.SX(0)] * 1
-    t0 = ca.sign(dq[0])
+    t0 = ca.sign(dq[0]) # joint j2: coulomb_friction
     t1 = ca.sin(q[0])
     t2 = ca.cos(q[0])
     MX1 = parameters[1]  # kg m
     MY1 = parameters[2]  # kg m
     ZZ1 = parameters[0]  # kg m^2
-    t3 = MX1 * (9.81 * t1) + MY1 * (9.81 * t2) + ZZ1 * ddq[0]
+    t3 = MX1 * (9.81 * t1) + MY1 * (9.81 * t2) + ZZ1 * ddq[0] # link j2: force and moment
     FV1 = parameters[3]  # N m s/rad
     FC1 = parameters[4]  # N m
     out[0] = FV1 * dq[0] + FC1 * t0 + t3
@@ -139,12 +139,12 @@ def _bias(name: str) -> ca.Function:
     in   parameters  [5]           base parameters; norm at most 1e+09
     out  input       [1]  [N m]    inputs: motor currents, efforts where undriven
 
-    Operations: 9 (6 mul, 3 add, 0 neg), 2 trig, 1 other.
+    Operations: 9 (6 mul, 3 add, 0 neg), 2 trig, 1 other calls (sign, select and the like).
     """
     inputs = [ca.SX.sym("q", 1), ca.SX.sym("dq", 1), ca.SX.sym("parameters", 5)]
     [q, dq, parameters] = (ca.vertsplit(vector) for vector in inputs)
     out = [ca.SX(0)] * 1
-    t0 = ca.sign(dq[0])
+    t0 = ca.sign(dq[0]) # joint j2: coulomb_friction
     t1 = ca.sin(q[0])
     t2 = ca.cos(q[0])
     FV1 = parameters[3]  # N m s/rad
@@ -192,13 +192,13 @@ def _forward_dynamics(name: str) -> ca.Function:
     in   parameters  [5]             base parameters; norm at most 1e+09
     out  ddq         [1]  [rad/s^2]  joint accelerations
 
-    Operations: 11 (7 mul, 4 add, 0 neg), 1 div, 2 trig, 1 other.
+    Operations: 11 (7 mul, 4 add, 0 neg), 1 div, 2 trig, 1 other calls (sign, select and the like).
     """
     inputs = [ca.SX.sym("q", 1), ca.SX.sym("dq", 1), ca.SX.sym("input", 1), ca.SX.sym("parameters", 5)]
     [q, dq, input, parameters] = (ca.vertsplit(vector) for vector in inputs)
     out = [ca.SX(0)] * 1
     ZZ1 = parameters[0]  # kg m^2
-    t0 = ca.sign(dq[0])
+    t0 = ca.sign(dq[0]) # joint j2: coulomb_friction
     t1 = ca.sin(q[0])
     t2 = ca.cos(q[0])
     MX1 = parameters[1]  # kg m
@@ -258,7 +258,7 @@ def _regressor(name: str) -> ca.Function:
 
         0 ZZ1, 1 MX1, 2 MY1, 3 FV1, 4 FC1
 
-    Operations: 2 (2 mul, 0 add, 0 neg), 2 trig, 1 other.
+    Operations: 2 (2 mul, 0 add, 0 neg), 2 trig, 1 other calls (sign, select and the like).
     """
     inputs = [ca.SX.sym("q", 1), ca.SX.sym("dq", 1), ca.SX.sym("ddq", 1)]
     [q, dq, ddq] = (ca.vertsplit(vector) for vector in inputs)
@@ -269,7 +269,7 @@ def _regressor(name: str) -> ca.Function:
     t1 = ca.cos(q[0])
     out[2] = 9.81 * t1
     out[3] = dq[0]
-    t2 = ca.sign(dq[0])
+    t2 = ca.sign(dq[0]) # joint j2: coulomb_friction
     out[4] = t2
     outputs = [_matrix(out, 1, 5)]
     names_in = ["q", "dq", "ddq"]
@@ -292,7 +292,7 @@ def _regressor_standard(name: str) -> ca.Function:
 
         0 XX1, 1 XY1, 2 XZ1, 3 YY1, 4 YZ1, 5 ZZ1, 6 MX1, 7 MY1, 8 MZ1, 9 M1, 10 FV1, 11 FC1
 
-    Operations: 2 (2 mul, 0 add, 0 neg), 2 trig, 1 other.
+    Operations: 2 (2 mul, 0 add, 0 neg), 2 trig, 1 other calls (sign, select and the like).
     """
     inputs = [ca.SX.sym("q", 1), ca.SX.sym("dq", 1), ca.SX.sym("ddq", 1)]
     [q, dq, ddq] = (ca.vertsplit(vector) for vector in inputs)
@@ -303,7 +303,7 @@ def _regressor_standard(name: str) -> ca.Function:
     t1 = ca.cos(q[0])
     out[7] = 9.81 * t1
     out[10] = dq[0]
-    t2 = ca.sign(dq[0])
+    t2 = ca.sign(dq[0]) # joint j2: coulomb_friction
     out[11] = t2
     outputs = [_matrix(out, 1, 12)]
     names_in = ["q", "dq", "ddq"]
@@ -325,7 +325,7 @@ def _regressor_packed(name: str) -> ca.Function:
 
         0 ZZ1, 1 MX1, 2 MY1, 3 FV1, 4 FC1
 
-    Operations: 2 (2 mul, 0 add, 0 neg), 2 trig, 1 other.
+    Operations: 2 (2 mul, 0 add, 0 neg), 2 trig, 1 other calls (sign, select and the like).
     """
     inputs = [ca.SX.sym("q", 1), ca.SX.sym("dq", 1), ca.SX.sym("ddq", 1)]
     [q, dq, ddq] = (ca.vertsplit(vector) for vector in inputs)
@@ -336,7 +336,7 @@ def _regressor_packed(name: str) -> ca.Function:
     t1 = ca.cos(q[0])
     out[2] = 9.81 * t1
     out[3] = dq[0]
-    t2 = ca.sign(dq[0])
+    t2 = ca.sign(dq[0]) # joint j2: coulomb_friction
     out[4] = t2
     outputs = [_vector(out)]
     names_in = ["q", "dq", "ddq"]
@@ -360,7 +360,7 @@ def _slotine_li_regressor(name: str) -> ca.Function:
 
         0 ZZ1, 1 MX1, 2 MY1, 3 FV1, 4 FC1
 
-    Operations: 2 (2 mul, 0 add, 0 neg), 2 trig, 1 other.
+    Operations: 2 (2 mul, 0 add, 0 neg), 2 trig, 1 other calls (sign, select and the like).
     """
     inputs = [ca.SX.sym("q", 1), ca.SX.sym("dq", 1), ca.SX.sym("dq_r", 1), ca.SX.sym("ddq_r", 1)]
     [q, dq, dq_r, ddq_r] = (ca.vertsplit(vector) for vector in inputs)
@@ -371,7 +371,7 @@ def _slotine_li_regressor(name: str) -> ca.Function:
     t1 = ca.cos(q[0])
     out[2] = 9.81 * t1
     out[3] = dq[0]
-    t2 = ca.sign(dq[0])
+    t2 = ca.sign(dq[0]) # joint j2: coulomb_friction
     out[4] = t2
     outputs = [_matrix(out, 1, 5)]
     names_in = ["q", "dq", "dq_r", "ddq_r"]
@@ -390,18 +390,18 @@ def _inverse_dynamics_standard(name: str) -> ca.Function:
     in   parameters  [12]             standard parameters; norm at most 1e+09
     out  input       [1]   [N m]      inputs: motor currents, efforts where undriven
 
-    Operations: 11 (7 mul, 4 add, 0 neg), 2 trig, 1 other.
+    Operations: 11 (7 mul, 4 add, 0 neg), 2 trig, 1 other calls (sign, select and the like).
     """
     inputs = [ca.SX.sym("q", 1), ca.SX.sym("dq", 1), ca.SX.sym("ddq", 1), ca.SX.sym("parameters", 12)]
     [q, dq, ddq, parameters] = (ca.vertsplit(vector) for vector in inputs)
     out = [ca.SX(0)] * 1
-    t0 = ca.sign(dq[0])
+    t0 = ca.sign(dq[0]) # joint j2: coulomb_friction
     t1 = ca.sin(q[0])
     t2 = ca.cos(q[0])
     MX1 = parameters[6]  # kg m
     MY1 = parameters[7]  # kg m
     ZZ1 = parameters[5]  # kg m^2
-    t3 = 9.81 * t1 * MX1 + 9.81 * t2 * MY1 + ddq[0] * ZZ1
+    t3 = 9.81 * t1 * MX1 + 9.81 * t2 * MY1 + ddq[0] * ZZ1 # link j2: force and moment
     FV1 = parameters[10]  # N m s/rad
     FC1 = parameters[11]  # N m
     out[0] = dq[0] * FV1 + t0 * FC1 + t3
@@ -446,12 +446,12 @@ def _bias_standard(name: str) -> ca.Function:
     in   parameters  [12]           standard parameters; norm at most 1e+09
     out  input       [1]   [N m]    inputs: motor currents, efforts where undriven
 
-    Operations: 9 (6 mul, 3 add, 0 neg), 2 trig, 1 other.
+    Operations: 9 (6 mul, 3 add, 0 neg), 2 trig, 1 other calls (sign, select and the like).
     """
     inputs = [ca.SX.sym("q", 1), ca.SX.sym("dq", 1), ca.SX.sym("parameters", 12)]
     [q, dq, parameters] = (ca.vertsplit(vector) for vector in inputs)
     out = [ca.SX(0)] * 1
-    t0 = ca.sign(dq[0])
+    t0 = ca.sign(dq[0]) # joint j2: coulomb_friction
     t1 = ca.sin(q[0])
     t2 = ca.cos(q[0])
     FV1 = parameters[10]  # N m s/rad
@@ -499,13 +499,13 @@ def _forward_dynamics_standard(name: str) -> ca.Function:
     in   parameters  [12]             standard parameters; norm at most 1e+09
     out  ddq         [1]   [rad/s^2]  joint accelerations
 
-    Operations: 11 (7 mul, 4 add, 0 neg), 1 div, 2 trig, 1 other.
+    Operations: 11 (7 mul, 4 add, 0 neg), 1 div, 2 trig, 1 other calls (sign, select and the like).
     """
     inputs = [ca.SX.sym("q", 1), ca.SX.sym("dq", 1), ca.SX.sym("input", 1), ca.SX.sym("parameters", 12)]
     [q, dq, input, parameters] = (ca.vertsplit(vector) for vector in inputs)
     out = [ca.SX(0)] * 1
     ZZ1 = parameters[5]  # kg m^2
-    t0 = ca.sign(dq[0])
+    t0 = ca.sign(dq[0]) # joint j2: coulomb_friction
     t1 = ca.sin(q[0])
     t2 = ca.cos(q[0])
     MX1 = parameters[6]  # kg m
@@ -659,8 +659,8 @@ def _drive_gain(name: str) -> ca.Function:
 
     Joint effort per input.
 
-    in   q     [1]  [rad]              joint coordinates; norm at most 10000
-    out  gain  [1]  [(N m) per (N m)]  drive gains K
+    in   q     [1]  [rad]          joint coordinates; norm at most 10000
+    out  gain  [1]  [N m per N m]  drive gains K
 
     Operations: 0 (0 mul, 0 add, 0 neg).
     """
@@ -680,16 +680,16 @@ def _inverse_dynamics_derivatives(name: str) -> ca.Function:
     Inputs that give the accelerations ddq, and their derivatives; at a kink of a law, as of dry
     friction at rest, the mean of both sides; base parameters.
 
-    in   q             [1]  [rad]                  joint coordinates; norm at most 10000
-    in   dq            [1]  [rad/s]                joint velocities; norm at most 100000
-    in   ddq           [1]  [rad/s^2]              joint accelerations; norm at most 1e+08
-    in   parameters    [5]                         base parameters; norm at most 1e+09
-    out  input         [1]  [N m]                  inputs: motor currents, efforts where undriven
-    out  input_by_q    [1]  [(N m) per (rad)]      d input / d q
-    out  input_by_dq   [1]  [(N m) per (rad/s)]    d input / d dq
-    out  input_by_ddq  [1]  [(N m) per (rad/s^2)]  d input / d ddq
+    in   q             [1]  [rad]                joint coordinates; norm at most 10000
+    in   dq            [1]  [rad/s]              joint velocities; norm at most 100000
+    in   ddq           [1]  [rad/s^2]            joint accelerations; norm at most 1e+08
+    in   parameters    [5]                       base parameters; norm at most 1e+09
+    out  input         [1]  [N m]                inputs: motor currents, efforts where undriven
+    out  input_by_q    [1]  [N m per rad]        d input / d q
+    out  input_by_dq   [1]  [N m per (rad/s)]    d input / d dq
+    out  input_by_ddq  [1]  [N m per (rad/s^2)]  d input / d ddq
 
-    Operations: 14 (9 mul, 5 add, 0 neg), 2 trig, 1 other.
+    Operations: 14 (9 mul, 5 add, 0 neg), 2 trig, 1 other calls (sign, select and the like).
     """
     inputs = [ca.SX.sym("q", 1), ca.SX.sym("dq", 1), ca.SX.sym("ddq", 1), ca.SX.sym("parameters", 5)]
     [q, dq, ddq, parameters] = (ca.vertsplit(vector) for vector in inputs)
@@ -697,9 +697,9 @@ def _inverse_dynamics_derivatives(name: str) -> ca.Function:
     out_input_by_q = [ca.SX(0)] * 1
     out_input_by_dq = [ca.SX(0)] * 1
     out_input_by_ddq = [ca.SX(0)] * 1
-    t0 = ca.sign(dq[0])
+    t0 = ca.sign(dq[0]) # joint j2: coulomb_friction
     t1 = ca.sin(q[0])
-    t2 = 9.81 * t1
+    t2 = 9.81 * t1 # link j2: motion
     t3 = ca.cos(q[0])
     t4 = 9.81 * t3
     FV1 = parameters[3]  # N m s/rad
@@ -731,11 +731,11 @@ def _forward_dynamics_derivatives(name: str) -> ca.Function:
                                                      most 1e+09
     in   parameters    [5]                           base parameters; norm at most 1e+09
     out  ddq           [1]  [rad/s^2]                joint accelerations
-    out  ddq_by_q      [1]  [(rad/s^2) per (rad)]    d ddq / d q
+    out  ddq_by_q      [1]  [(rad/s^2) per rad]      d ddq / d q
     out  ddq_by_dq     [1]  [(rad/s^2) per (rad/s)]  d ddq / d dq
-    out  ddq_by_input  [1]  [(rad/s^2) per (N m)]    d ddq / d input
+    out  ddq_by_input  [1]  [(rad/s^2) per N m]      d ddq / d input
 
-    Operations: 17 (11 mul, 5 add, 1 neg), 1 div, 2 trig, 1 other.
+    Operations: 17 (11 mul, 5 add, 1 neg), 1 div, 2 trig, 1 other calls (sign, select and the like).
     """
     inputs = [ca.SX.sym("q", 1), ca.SX.sym("dq", 1), ca.SX.sym("input", 1), ca.SX.sym("parameters", 5)]
     [q, dq, input, parameters] = (ca.vertsplit(vector) for vector in inputs)
@@ -744,9 +744,9 @@ def _forward_dynamics_derivatives(name: str) -> ca.Function:
     out_ddq_by_dq = [ca.SX(0)] * 1
     out_ddq_by_input = [ca.SX(0)] * 1
     ZZ1 = parameters[0]  # kg m^2
-    t0 = ca.sign(dq[0])
+    t0 = ca.sign(dq[0]) # joint j2: coulomb_friction
     t1 = ca.sin(q[0])
-    t2 = 9.81 * t1
+    t2 = 9.81 * t1 # link j2: motion
     t3 = ca.cos(q[0])
     t4 = -9.81 * t3
     MY1 = parameters[2]  # kg m
@@ -771,16 +771,16 @@ def _inverse_dynamics_derivatives_standard(name: str) -> ca.Function:
     Inputs that give the accelerations ddq, and their derivatives; at a kink of a law, as of dry
     friction at rest, the mean of both sides; standard parameters.
 
-    in   q             [1]   [rad]                  joint coordinates; norm at most 10000
-    in   dq            [1]   [rad/s]                joint velocities; norm at most 100000
-    in   ddq           [1]   [rad/s^2]              joint accelerations; norm at most 1e+08
-    in   parameters    [12]                         standard parameters; norm at most 1e+09
-    out  input         [1]   [N m]                  inputs: motor currents, efforts where undriven
-    out  input_by_q    [1]   [(N m) per (rad)]      d input / d q
-    out  input_by_dq   [1]   [(N m) per (rad/s)]    d input / d dq
-    out  input_by_ddq  [1]   [(N m) per (rad/s^2)]  d input / d ddq
+    in   q             [1]   [rad]                joint coordinates; norm at most 10000
+    in   dq            [1]   [rad/s]              joint velocities; norm at most 100000
+    in   ddq           [1]   [rad/s^2]            joint accelerations; norm at most 1e+08
+    in   parameters    [12]                       standard parameters; norm at most 1e+09
+    out  input         [1]   [N m]                inputs: motor currents, efforts where undriven
+    out  input_by_q    [1]   [N m per rad]        d input / d q
+    out  input_by_dq   [1]   [N m per (rad/s)]    d input / d dq
+    out  input_by_ddq  [1]   [N m per (rad/s^2)]  d input / d ddq
 
-    Operations: 14 (9 mul, 5 add, 0 neg), 2 trig, 1 other.
+    Operations: 14 (9 mul, 5 add, 0 neg), 2 trig, 1 other calls (sign, select and the like).
     """
     inputs = [ca.SX.sym("q", 1), ca.SX.sym("dq", 1), ca.SX.sym("ddq", 1), ca.SX.sym("parameters", 12)]
     [q, dq, ddq, parameters] = (ca.vertsplit(vector) for vector in inputs)
@@ -788,9 +788,9 @@ def _inverse_dynamics_derivatives_standard(name: str) -> ca.Function:
     out_input_by_q = [ca.SX(0)] * 1
     out_input_by_dq = [ca.SX(0)] * 1
     out_input_by_ddq = [ca.SX(0)] * 1
-    t0 = ca.sign(dq[0])
+    t0 = ca.sign(dq[0]) # joint j2: coulomb_friction
     t1 = ca.sin(q[0])
-    t2 = 9.81 * t1
+    t2 = 9.81 * t1 # link j2: motion
     t3 = ca.cos(q[0])
     t4 = 9.81 * t3
     FV1 = parameters[10]  # N m s/rad
@@ -822,11 +822,11 @@ def _forward_dynamics_derivatives_standard(name: str) -> ca.Function:
                                                       most 1e+09
     in   parameters    [12]                           standard parameters; norm at most 1e+09
     out  ddq           [1]   [rad/s^2]                joint accelerations
-    out  ddq_by_q      [1]   [(rad/s^2) per (rad)]    d ddq / d q
+    out  ddq_by_q      [1]   [(rad/s^2) per rad]      d ddq / d q
     out  ddq_by_dq     [1]   [(rad/s^2) per (rad/s)]  d ddq / d dq
-    out  ddq_by_input  [1]   [(rad/s^2) per (N m)]    d ddq / d input
+    out  ddq_by_input  [1]   [(rad/s^2) per N m]      d ddq / d input
 
-    Operations: 17 (11 mul, 5 add, 1 neg), 1 div, 2 trig, 1 other.
+    Operations: 17 (11 mul, 5 add, 1 neg), 1 div, 2 trig, 1 other calls (sign, select and the like).
     """
     inputs = [ca.SX.sym("q", 1), ca.SX.sym("dq", 1), ca.SX.sym("input", 1), ca.SX.sym("parameters", 12)]
     [q, dq, input, parameters] = (ca.vertsplit(vector) for vector in inputs)
@@ -835,9 +835,9 @@ def _forward_dynamics_derivatives_standard(name: str) -> ca.Function:
     out_ddq_by_dq = [ca.SX(0)] * 1
     out_ddq_by_input = [ca.SX(0)] * 1
     ZZ1 = parameters[5]  # kg m^2
-    t0 = ca.sign(dq[0])
+    t0 = ca.sign(dq[0]) # joint j2: coulomb_friction
     t1 = ca.sin(q[0])
-    t2 = 9.81 * t1
+    t2 = 9.81 * t1 # link j2: motion
     t3 = ca.cos(q[0])
     t4 = -9.81 * t3
     MY1 = parameters[7]  # kg m
@@ -853,6 +853,92 @@ def _forward_dynamics_derivatives_standard(name: str) -> ca.Function:
     outputs = [_vector(out_ddq), _vector(out_ddq_by_q), _vector(out_ddq_by_dq), _vector(out_ddq_by_input)]
     names_in = ["q", "dq", "input", "parameters"]
     names_out = ["ddq", "ddq_by_q", "ddq_by_dq", "ddq_by_input"]
+    return ca.Function(name, inputs, outputs, names_in, names_out, {})
+
+
+def _momentum_observer_step(name: str) -> ca.Function:
+    """momentum_observer_step(q, dq, input, dt, gain, parameters, state) -> state_next, external
+
+    External efforts at the joints by the generalised momentum, with a delay of 1 / gain; state: zero at
+    first, then what the step before gave; base parameters.
+
+    in   q           [1]  [rad]       joint coordinates; norm at most 10000
+    in   dq          [1]  [rad/s]     joint velocities; norm at most 100000
+    in   input       [1]  [N m]       inputs: motor currents, efforts where undriven; norm at most 1e+09
+    in   dt          [1]  [s]         time step; norm at most 10000
+    in   gain        [1]  [1/s]       gains of the observer, gain dt below 1; norm at most 100000
+    in   parameters  [5]              base parameters; norm at most 1e+09
+    in   state       [1]  [kg m^2/s]  state of the observer: the momentum that the model expects; norm at most
+                                      1e+09
+    out  state_next  [1]  [kg m^2/s]  state after the step
+    out  external    [1]  [N m]       efforts that act on the arm from outside
+
+    Operations: 19 (10 mul, 8 add, 1 neg), 2 trig, 1 other calls (sign, select and the like).
+    """
+    inputs = [ca.SX.sym("q", 1), ca.SX.sym("dq", 1), ca.SX.sym("input", 1), ca.SX.sym("dt", 1),
+        ca.SX.sym("gain", 1), ca.SX.sym("parameters", 5), ca.SX.sym("state", 1)]
+    [q, dq, input, dt, gain, parameters, state] = (ca.vertsplit(vector) for vector in inputs)
+    out_state_next = [ca.SX(0)] * 1
+    out_external = [ca.SX(0)] * 1
+    t0 = dt[0] * gain[0] - 1.0
+    t1 = ca.sign(dq[0]) # joint j2: coulomb_friction
+    t2 = ca.sin(q[0])
+    t3 = ca.cos(q[0])
+    MX1 = parameters[1]  # kg m
+    MY1 = parameters[2]  # kg m
+    FV1 = parameters[3]  # N m s/rad
+    FC1 = parameters[4]  # N m
+    t4 = MX1 * (-9.81 * t2) + MY1 * (-9.81 * t3) - (FV1 * dq[0] + FC1 * t1)
+    ZZ1 = parameters[0]  # kg m^2
+    t5 = gain[0] * (ZZ1 * dq[0] - state[0])
+    out_state_next[0] = state[0] + dt[0] * (input[0] + t4 + t5)
+    out_external[0] = t5
+    outputs = [_vector(out_state_next), _vector(out_external)]
+    names_in = ["q", "dq", "input", "dt", "gain", "parameters", "state"]
+    names_out = ["state_next", "external"]
+    return ca.Function(name, inputs, outputs, names_in, names_out, {})
+
+
+def _momentum_observer_step_standard(name: str) -> ca.Function:
+    """momentum_observer_step_standard(q, dq, input, dt, gain, parameters, state) -> state_next, external
+
+    External efforts at the joints by the generalised momentum, with a delay of 1 / gain; state: zero at
+    first, then what the step before gave; standard parameters.
+
+    in   q           [1]   [rad]       joint coordinates; norm at most 10000
+    in   dq          [1]   [rad/s]     joint velocities; norm at most 100000
+    in   input       [1]   [N m]       inputs: motor currents, efforts where undriven; norm at most 1e+09
+    in   dt          [1]   [s]         time step; norm at most 10000
+    in   gain        [1]   [1/s]       gains of the observer, gain dt below 1; norm at most 100000
+    in   parameters  [12]              standard parameters; norm at most 1e+09
+    in   state       [1]   [kg m^2/s]  state of the observer: the momentum that the model expects; norm at most
+                                       1e+09
+    out  state_next  [1]   [kg m^2/s]  state after the step
+    out  external    [1]   [N m]       efforts that act on the arm from outside
+
+    Operations: 19 (10 mul, 8 add, 1 neg), 2 trig, 1 other calls (sign, select and the like).
+    """
+    inputs = [ca.SX.sym("q", 1), ca.SX.sym("dq", 1), ca.SX.sym("input", 1), ca.SX.sym("dt", 1),
+        ca.SX.sym("gain", 1), ca.SX.sym("parameters", 12), ca.SX.sym("state", 1)]
+    [q, dq, input, dt, gain, parameters, state] = (ca.vertsplit(vector) for vector in inputs)
+    out_state_next = [ca.SX(0)] * 1
+    out_external = [ca.SX(0)] * 1
+    t0 = dt[0] * gain[0] - 1.0
+    t1 = ca.sign(dq[0]) # joint j2: coulomb_friction
+    t2 = ca.sin(q[0])
+    t3 = ca.cos(q[0])
+    MX1 = parameters[6]  # kg m
+    MY1 = parameters[7]  # kg m
+    FV1 = parameters[10]  # N m s/rad
+    FC1 = parameters[11]  # N m
+    t4 = -9.81 * t2 * MX1 + -9.81 * t3 * MY1 - (dq[0] * FV1 + t1 * FC1)
+    ZZ1 = parameters[5]  # kg m^2
+    t5 = gain[0] * (dq[0] * ZZ1 - state[0])
+    out_state_next[0] = state[0] + dt[0] * (input[0] + t4 + t5)
+    out_external[0] = t5
+    outputs = [_vector(out_state_next), _vector(out_external)]
+    names_in = ["q", "dq", "input", "dt", "gain", "parameters", "state"]
+    names_out = ["state_next", "external"]
     return ca.Function(name, inputs, outputs, names_in, names_out, {})
 
 
@@ -882,4 +968,6 @@ _BUILDERS = {
     "gravity_link2_forward_dynamics_derivatives": _forward_dynamics_derivatives,
     "gravity_link2_inverse_dynamics_derivatives_standard": _inverse_dynamics_derivatives_standard,
     "gravity_link2_forward_dynamics_derivatives_standard": _forward_dynamics_derivatives_standard,
+    "gravity_link2_momentum_observer_step": _momentum_observer_step,
+    "gravity_link2_momentum_observer_step_standard": _momentum_observer_step_standard,
 }

@@ -107,61 +107,61 @@ def _inverse_dynamics(name: str) -> ca.Function:
     in   parameters  [19]                                      base parameters; norm at most 1e+09
     out  input       [4]   [A]                                 inputs: motor currents, efforts where undriven
 
-    Operations: 108 (67 mul, 41 add, 0 neg), 4 trig, 4 other.
+    Operations: 108 (67 mul, 41 add, 0 neg), 4 trig, 4 other calls (sign, select and the like).
     """
     inputs = [ca.SX.sym("q", 4), ca.SX.sym("dq", 4), ca.SX.sym("ddq", 4), ca.SX.sym("parameters", 19)]
     [q, dq, ddq, parameters] = (ca.vertsplit(vector) for vector in inputs)
     out = [ca.SX(0)] * 4
-    t0 = dq[0] + dq[1]
+    t0 = dq[0] + dq[1] # link j2: motion
     t1 = t0 * t0
     t2 = 0.325 * (dq[0] * dq[0])
     t3 = ca.cos(q[1])
     t4 = 0.325 * ddq[0]
     t5 = ca.sin(q[1])
     t6 = t5 * t4 - t3 * t2
-    t7 = -0.275 * t1 + t6
+    t7 = -0.275 * t1 + t6 # link j3: motion
     t8 = ca.sin(q[3])
-    t9 = t5 * t2 + t3 * t4
+    t9 = t5 * t2 + t3 * t4 # link j2: motion
     t10 = ddq[0] + ddq[1]
-    t11 = t9 + 0.275 * t10
+    t11 = t9 + 0.275 * t10 # link j3: motion
     t12 = ca.cos(q[3])
     MX4 = parameters[6]  # kg m
     MY4 = parameters[7]  # kg m
-    t13 = MX4 * (t8 * t7 + t12 * t11) + MY4 * (t12 * t7 - t8 * t11)
-    t14 = t10 - ddq[3]
+    t13 = MX4 * (t8 * t7 + t12 * t11) + MY4 * (t12 * t7 - t8 * t11) # link j4: force and moment
+    t14 = t10 - ddq[3] # link j4: motion
     ZZ4 = parameters[5]  # kg m^2
-    t15 = ZZ4 * t14 + t13
-    t16 = dq[3] - t0
+    t15 = ZZ4 * t14 + t13 # link j4: force and moment
+    t16 = dq[3] - t0 # link j4: motion
     t17 = t16 * t16
-    t18 = MX4 * t17 - MY4 * t14
+    t18 = MX4 * t17 - MY4 * t14 # link j4: force and moment
     t19 = MY4 * t17 + MX4 * t14
     M3R = parameters[4]  # kg
-    t20 = M3R * t11 + (t8 * t18 + t12 * t19)
+    t20 = M3R * t11 + (t8 * t18 + t12 * t19) # link j4: what it passes on
     ZZ2R = parameters[1]  # kg m^2
     MX2R = parameters[2]  # kg m
     MY2R = parameters[3]  # kg m
-    t21 = ZZ2R * t10 + (MX2R * t9 - MY2R * t6) + (t15 + 0.275 * t20)
+    t21 = ZZ2R * t10 + (MX2R * t9 - MY2R * t6) + (t15 + 0.275 * t20) # link j3: what it passes on
     t22 = M3R * t7 + (t8 * t19 - t12 * t18) - (MX2R * t1 + MY2R * t10)
-    t23 = t5 * t22 + t3 * (MX2R * t10 - MY2R * t1 + t20)
-    t24 = ca.sign(dq[0])
+    t23 = t5 * t22 + t3 * (MX2R * t10 - MY2R * t1 + t20) # link j2: what it passes on
+    t24 = ca.sign(dq[0]) # joint j1: coulomb_friction
     FV1 = parameters[8]  # N m s/rad
     FC1 = parameters[9]  # N m
     ZZ1R = parameters[0]  # kg m^2
     t25 = 5.0 * (FV1 * (80.0 * dq[0]) + FC1 * t24) + 0.0625 * (ZZ1R * ddq[0] + (t21 + 0.325 * t23))
     out[0] = t25
-    t26 = ca.sign(dq[1])
+    t26 = ca.sign(dq[1]) # joint j2: coulomb_friction
     FV2 = parameters[10]  # N m s/rad
     FC2 = parameters[11]  # N m
     IA2 = parameters[12]  # N m s^2/rad
     t27 = FV2 * (50.0 * dq[1]) + FC2 * t26 + IA2 * (50.0 * ddq[1])
     out[1] = 5.0 * t27 + 0.1 * t21
-    t28 = ca.sign(dq[2])
+    t28 = ca.sign(dq[2]) # joint j3: coulomb_friction
     FV3 = parameters[13]  # N m s/rad
     FC3 = parameters[14]  # N m
     IA3 = parameters[15]  # N m s^2/rad
     t29 = FV3 * (314.1592653589793 * dq[2]) + FC3 * t28 + IA3 * (314.1592653589793 * ddq[2])
     out[2] = 10.0 * t29 + 0.03183098861837907 * (M3R * (ddq[2] - 9.81))
-    t30 = ca.sign(dq[3])
+    t30 = ca.sign(dq[3]) # joint j4: coulomb_friction
     FV4 = parameters[16]  # N m s/rad
     FC4 = parameters[17]  # N m
     IA4 = parameters[18]  # N m s^2/rad
@@ -205,51 +205,51 @@ def _bias(name: str) -> ca.Function:
     in   parameters  [19]                              base parameters; norm at most 1e+09
     out  input       [4]   [A]                         inputs: motor currents, efforts where undriven
 
-    Operations: 74 (49 mul, 25 add, 0 neg), 4 trig, 4 other.
+    Operations: 74 (49 mul, 25 add, 0 neg), 4 trig, 4 other calls (sign, select and the like).
     """
     inputs = [ca.SX.sym("q", 4), ca.SX.sym("dq", 4), ca.SX.sym("parameters", 19)]
     [q, dq, parameters] = (ca.vertsplit(vector) for vector in inputs)
     out = [ca.SX(0)] * 4
-    t0 = dq[0] + dq[1]
+    t0 = dq[0] + dq[1] # link j2: motion
     t1 = t0 * t0
     t2 = 0.325 * (dq[0] * dq[0])
     t3 = ca.cos(q[1])
     t4 = t3 * t2
-    t5 = -0.275 * t1 - t4
+    t5 = -0.275 * t1 - t4 # link j3: motion
     t6 = ca.sin(q[3])
     t7 = ca.sin(q[1])
-    t8 = t7 * t2
+    t8 = t7 * t2 # link j2: motion
     t9 = ca.cos(q[3])
     MX4 = parameters[6]  # kg m
     MY4 = parameters[7]  # kg m
-    t10 = MX4 * (t6 * t5 + t9 * t8) + MY4 * (t9 * t5 - t6 * t8)
-    t11 = dq[3] - t0
+    t10 = MX4 * (t6 * t5 + t9 * t8) + MY4 * (t9 * t5 - t6 * t8) # link j4: force and moment
+    t11 = dq[3] - t0 # link j4: motion
     t12 = t11 * t11
-    t13 = MX4 * t12
+    t13 = MX4 * t12 # link j4: force and moment
     t14 = MY4 * t12
     M3R = parameters[4]  # kg
-    t15 = M3R * t8 + (t6 * t13 + t9 * t14)
+    t15 = M3R * t8 + (t6 * t13 + t9 * t14) # link j4: what it passes on
     MX2R = parameters[2]  # kg m
     MY2R = parameters[3]  # kg m
-    t16 = MX2R * t8 + MY2R * t4 + (t10 + 0.275 * t15)
+    t16 = MX2R * t8 + MY2R * t4 + (t10 + 0.275 * t15) # link j3: what it passes on
     t17 = M3R * t5 + (t6 * t14 - t9 * t13) - MX2R * t1
-    t18 = 0.325 * (t7 * t17 + t3 * (t15 - MY2R * t1))
-    t19 = ca.sign(dq[0])
+    t18 = 0.325 * (t7 * t17 + t3 * (t15 - MY2R * t1)) # link j2: what it passes on
+    t19 = ca.sign(dq[0]) # joint j1: coulomb_friction
     FV1 = parameters[8]  # N m s/rad
     FC1 = parameters[9]  # N m
     t20 = 5.0 * (FV1 * (80.0 * dq[0]) + FC1 * t19) + 0.0625 * (t16 + t18)
     out[0] = t20
-    t21 = ca.sign(dq[1])
+    t21 = ca.sign(dq[1]) # joint j2: coulomb_friction
     FV2 = parameters[10]  # N m s/rad
     FC2 = parameters[11]  # N m
     t22 = 5.0 * (FV2 * (50.0 * dq[1]) + FC2 * t21) + 0.1 * t16
     out[1] = t22
-    t23 = ca.sign(dq[2])
+    t23 = ca.sign(dq[2]) # joint j3: coulomb_friction
     FV3 = parameters[13]  # N m s/rad
     FC3 = parameters[14]  # N m
     t24 = -0.3122619983462987 * M3R + 10.0 * (FV3 * (314.1592653589793 * dq[2]) + FC3 * t23)
     out[2] = t24
-    t25 = ca.sign(dq[3])
+    t25 = ca.sign(dq[3]) # joint j4: coulomb_friction
     FV4 = parameters[16]  # N m s/rad
     FC4 = parameters[17]  # N m
     t26 = 10.0 * (FV4 * (20.0 * dq[3]) + FC4 * t25) + -0.5 * t10
@@ -278,24 +278,24 @@ def _mass_matrix(name: str) -> ca.Function:
     t1 = ca.sin(q[3])
     MY4 = parameters[7]  # kg m
     MX4 = parameters[6]  # kg m
-    t2 = t0 * MY4 + t1 * MX4
+    t2 = t0 * MY4 + t1 * MX4 # link j4: column of the mass matrix
     t3 = ca.sin(q[1])
     t4 = t0 * MX4 - t1 * MY4
     M3R = parameters[4]  # kg
-    t5 = 0.275 * M3R
+    t5 = 0.275 * M3R # link j3: column of the mass matrix
     t6 = ca.cos(q[1])
     MY2R = parameters[3]  # kg m
     MX2R = parameters[2]  # kg m
-    t7 = t3 * (t2 - MY2R) + t6 * (MX2R + (t4 + t5))
+    t7 = t3 * (t2 - MY2R) + t6 * (MX2R + (t4 + t5)) # link j2: column of the mass matrix
     ZZ2R = parameters[1]  # kg m^2
     ZZ4 = parameters[5]  # kg m^2
-    t8 = ZZ2R + (ZZ4 + 0.275 * (2.0 * t4 + t5))
+    t8 = ZZ2R + (ZZ4 + 0.275 * (2.0 * t4 + t5)) # link j3: inertia of it and all beyond
     ZZ1R = parameters[0]  # kg m^2
-    t9 = ZZ1R + (t8 + 0.325 * (0.325 * M3R + 2.0 * t7))
+    t9 = ZZ1R + (t8 + 0.325 * (0.325 * M3R + 2.0 * t7)) # link j2: inertia of it and all beyond
     out[0] = t9
-    t10 = t8 + 0.325 * t7
+    t10 = t8 + 0.325 * t7 # link j2: column of the mass matrix
     out[1] = t10
-    t11 = -0.275 * t4 - ZZ4
+    t11 = -0.275 * t4 - ZZ4 # link j4: column of the mass matrix
     t12 = t11 + -0.325 * (t3 * t2 + t6 * t4)
     out[3] = t12
     out[4] = t10
@@ -326,7 +326,7 @@ def _forward_dynamics(name: str) -> ca.Function:
     in   parameters  [19]                                      base parameters; norm at most 1e+09
     out  ddq         [4]   [rad/s^2, rad/s^2, m/s^2, rad/s^2]  joint accelerations
 
-    Operations: 149 (89 mul, 60 add, 0 neg), 4 div, 4 trig, 4 other.
+    Operations: 149 (89 mul, 60 add, 0 neg), 4 div, 4 trig, 4 other calls (sign, select and the like).
     """
     inputs = [ca.SX.sym("q", 4), ca.SX.sym("dq", 4), ca.SX.sym("input", 4), ca.SX.sym("parameters", 19)]
     [q, dq, input, parameters] = (ca.vertsplit(vector) for vector in inputs)
@@ -341,57 +341,57 @@ def _forward_dynamics(name: str) -> ca.Function:
     t3 = ca.cos(q[3])
     MX4 = parameters[6]  # kg m
     MY4 = parameters[7]  # kg m
-    t4 = t3 * MX4 - t2 * MY4
+    t4 = t3 * MX4 - t2 * MY4 # link j4: column of the mass matrix
     t5 = ZZ4 + 0.275 * t4
     t6 = 1.0 / t1
     t7 = t5 * t6
-    t8 = 0.275 * M3R
+    t8 = 0.275 * M3R # link j3: column of the mass matrix
     ZZ2R = parameters[1]  # kg m^2
-    t9 = ZZ2R + (ZZ4 + 0.275 * (2.0 * t4 + t8))
+    t9 = ZZ2R + (ZZ4 + 0.275 * (2.0 * t4 + t8)) # link j3: inertia of it and all beyond
     IA2 = parameters[12]  # N m s^2/rad
     t10 = t9 + 2500.0 * IA2
     t11 = t10 - t5 * t7
     t12 = t11 + -1e-09 * t10
-    t13 = t3 * MY4 + t2 * MX4
+    t13 = t3 * MY4 + t2 * MX4 # link j4: column of the mass matrix
     t14 = ca.sin(q[1])
     t15 = ca.cos(q[1])
     MY2R = parameters[3]  # kg m
     MX2R = parameters[2]  # kg m
-    t16 = t14 * (MY2R - t13) - t15 * (MX2R + (t4 + t8))
-    t17 = t5 + 0.325 * (t14 * t13 + t15 * t4)
+    t16 = t14 * (MY2R - t13) - t15 * (MX2R + (t4 + t8)) # link j2: column of the mass matrix
+    t17 = t5 + 0.325 * (t14 * t13 + t15 * t4) # link j4: column of the mass matrix
     t18 = 0.325 * t16 - t9 + t17 * t7
     t19 = 1.0 / t11
     t20 = t18 * t19
     t21 = t17 * t6
     ZZ1R = parameters[0]  # kg m^2
-    t22 = ZZ1R + (t9 + 0.325 * (0.325 * M3R + -2.0 * t16))
+    t22 = ZZ1R + (t9 + 0.325 * (0.325 * M3R + -2.0 * t16)) # link j2: inertia of it and all beyond
     t23 = t22 - t17 * t21 - t18 * t20
     t24 = t23 + -1e-09 * t22
-    t25 = dq[0] + dq[1]
+    t25 = dq[0] + dq[1] # link j2: motion
     t26 = t25 * t25
     t27 = 0.325 * (dq[0] * dq[0])
     t28 = t15 * t27
-    t29 = t28 + 0.275 * t26
-    t30 = t14 * t27
-    t31 = MX4 * (t2 * t29 - t3 * t30) + MY4 * (t3 * t29 + t2 * t30)
-    t32 = t25 - dq[3]
+    t29 = t28 + 0.275 * t26 # link j3: motion
+    t30 = t14 * t27 # link j2: motion
+    t31 = MX4 * (t2 * t29 - t3 * t30) + MY4 * (t3 * t29 + t2 * t30) # link j4: force and moment
+    t32 = t25 - dq[3] # link j4: motion
     t33 = t32 * t32
-    t34 = MX4 * t33
+    t34 = MX4 * t33 # link j4: force and moment
     t35 = MY4 * t33
-    t36 = M3R * t30 + (t2 * t34 + t3 * t35)
-    t37 = t31 + -0.275 * t36 - (MX2R * t30 + MY2R * t28)
+    t36 = M3R * t30 + (t2 * t34 + t3 * t35) # link j4: what it passes on
+    t37 = t31 + -0.275 * t36 - (MX2R * t30 + MY2R * t28) # link j3: what it passes on
     t38 = MX2R * t26 + (M3R * t29 + (t3 * t34 - t2 * t35))
-    t39 = 0.325 * (t14 * t38 + t15 * (MY2R * t26 - t36))
-    t40 = ca.sign(dq[0])
+    t39 = 0.325 * (t14 * t38 + t15 * (MY2R * t26 - t36)) # link j2: what it passes on
+    t40 = ca.sign(dq[0]) # joint j1: coulomb_friction
     FV1 = parameters[8]  # N m s/rad
     FC1 = parameters[9]  # N m
     t41 = 80.0 * (FV1 * (-80.0 * dq[0]) - FC1 * t40) + (t37 + t39)
-    t42 = ca.sign(dq[3])
+    t42 = ca.sign(dq[3]) # joint j4: coulomb_friction
     FV4 = parameters[16]  # N m s/rad
     FC4 = parameters[17]  # N m
     t43 = 20.0 * (FV4 * (-20.0 * dq[3]) - FC4 * t42) - t31
     t44 = 2.0 * input[3] + t43
-    t45 = ca.sign(dq[1])
+    t45 = ca.sign(dq[1]) # joint j2: coulomb_friction
     FV2 = parameters[10]  # N m s/rad
     FC2 = parameters[11]  # N m
     t46 = 50.0 * (FV2 * (50.0 * dq[1]) + FC2 * t45) - t37
@@ -402,7 +402,7 @@ def _forward_dynamics(name: str) -> ca.Function:
     out[0] = t50
     t51 = t47 * t19 + t20 * t50
     out[1] = t51
-    t52 = ca.sign(dq[2])
+    t52 = ca.sign(dq[2]) # joint j3: coulomb_friction
     FV3 = parameters[13]  # N m s/rad
     FC3 = parameters[14]  # N m
     t53 = 314.1592653589793 * (FV3 * (-314.1592653589793 * dq[2]) - FC3 * t52) + 9.81 * M3R
@@ -432,8 +432,8 @@ def _energy(name: str) -> ca.Function:
     [q, dq, parameters] = (ca.vertsplit(vector) for vector in inputs)
     out_kinetic = [ca.SX(0)] * 1
     out_potential = [ca.SX(0)] * 1
-    t0 = dq[0] + dq[1]
-    t1 = 0.325 * dq[0]
+    t0 = dq[0] + dq[1] # link j2: motion
+    t1 = 0.325 * dq[0] # link j2: velocity of its origin
     t2 = ca.cos(q[1])
     t3 = t2 * t1
     t4 = ca.sin(q[1])
@@ -444,11 +444,11 @@ def _energy(name: str) -> ca.Function:
     MX2R = parameters[2]  # kg m
     MY2R = parameters[3]  # kg m
     t7 = t6 + (MX2R * (t0 * t3) - MY2R * (t0 * t5))
-    t8 = t3 + 0.275 * t0
+    t8 = t3 + 0.275 * t0 # link j3: velocity of its origin
     t9 = dq[2] * dq[2]
     M3R = parameters[4]  # kg
     t10 = 0.5 * (M3R * (t9 + (t5 * t5 + t8 * t8)))
-    t11 = dq[3] - t0
+    t11 = dq[3] - t0 # link j4: motion
     t12 = ca.cos(q[3])
     t13 = ca.sin(q[3])
     MY4 = parameters[7]  # kg m
@@ -468,6 +468,84 @@ def _energy(name: str) -> ca.Function:
     return ca.Function(name, inputs, outputs, names_in, names_out, {})
 
 
+def _joint_effort(name: str) -> ca.Function:
+    """joint_effort(q, dq, ddq, parameters) -> effort
+
+    Efforts of the drives at the joints that give the accelerations ddq in the state q, dq; base
+    parameters.
+
+    in   q           [4]   [rad, rad, m, rad]                  joint coordinates; norm at most 10000
+    in   dq          [4]   [rad/s, rad/s, m/s, rad/s]          joint velocities; norm at most 100000
+    in   ddq         [4]   [rad/s^2, rad/s^2, m/s^2, rad/s^2]  joint accelerations; norm at most 1e+08
+    in   parameters  [19]                                      base parameters; norm at most 1e+09
+    out  effort      [4]   [N m, N m, N, N m]                  efforts at the joints
+
+    Operations: 104 (63 mul, 41 add, 0 neg), 4 trig, 4 other calls (sign, select and the like).
+    """
+    inputs = [ca.SX.sym("q", 4), ca.SX.sym("dq", 4), ca.SX.sym("ddq", 4), ca.SX.sym("parameters", 19)]
+    [q, dq, ddq, parameters] = (ca.vertsplit(vector) for vector in inputs)
+    out = [ca.SX(0)] * 4
+    t0 = dq[0] + dq[1] # link j2: motion
+    t1 = t0 * t0
+    t2 = 0.325 * (dq[0] * dq[0])
+    t3 = ca.cos(q[1])
+    t4 = 0.325 * ddq[0]
+    t5 = ca.sin(q[1])
+    t6 = t5 * t4 - t3 * t2
+    t7 = -0.275 * t1 + t6 # link j3: motion
+    t8 = ca.sin(q[3])
+    t9 = t5 * t2 + t3 * t4 # link j2: motion
+    t10 = ddq[0] + ddq[1]
+    t11 = t9 + 0.275 * t10 # link j3: motion
+    t12 = ca.cos(q[3])
+    MY4 = parameters[7]  # kg m
+    MX4 = parameters[6]  # kg m
+    t13 = MY4 * (t8 * t11 - t12 * t7) - MX4 * (t8 * t7 + t12 * t11) # link j4: force and moment
+    t14 = t10 - ddq[3] # link j4: motion
+    ZZ4 = parameters[5]  # kg m^2
+    t15 = t13 - ZZ4 * t14 # link j4: force and moment
+    t16 = dq[3] - t0 # link j4: motion
+    t17 = t16 * t16
+    t18 = MX4 * t17 - MY4 * t14 # link j4: force and moment
+    t19 = MY4 * t17 + MX4 * t14
+    M3R = parameters[4]  # kg
+    t20 = M3R * t11 + (t8 * t18 + t12 * t19) # link j4: what it passes on
+    ZZ2R = parameters[1]  # kg m^2
+    MX2R = parameters[2]  # kg m
+    MY2R = parameters[3]  # kg m
+    t21 = ZZ2R * t10 + (MX2R * t9 - MY2R * t6) + (0.275 * t20 - t15) # link j3: what it passes on
+    t22 = M3R * t7 + (t8 * t19 - t12 * t18) - (MX2R * t1 + MY2R * t10)
+    t23 = t5 * t22 + t3 * (MX2R * t10 - MY2R * t1 + t20) # link j2: what it passes on
+    t24 = ca.sign(dq[0]) # joint j1: coulomb_friction
+    FV1 = parameters[8]  # N m s/rad
+    FC1 = parameters[9]  # N m
+    ZZ1R = parameters[0]  # kg m^2
+    t25 = 80.0 * (FV1 * (80.0 * dq[0]) + FC1 * t24) + (ZZ1R * ddq[0] + (t21 + 0.325 * t23))
+    out[0] = t25
+    t26 = ca.sign(dq[1]) # joint j2: coulomb_friction
+    FV2 = parameters[10]  # N m s/rad
+    FC2 = parameters[11]  # N m
+    IA2 = parameters[12]  # N m s^2/rad
+    t27 = FV2 * (50.0 * dq[1]) + FC2 * t26 + IA2 * (50.0 * ddq[1])
+    out[1] = t21 + 50.0 * t27
+    t28 = ca.sign(dq[2]) # joint j3: coulomb_friction
+    FV3 = parameters[13]  # N m s/rad
+    FC3 = parameters[14]  # N m
+    IA3 = parameters[15]  # N m s^2/rad
+    t29 = FV3 * (314.1592653589793 * dq[2]) + FC3 * t28 + IA3 * (314.1592653589793 * ddq[2])
+    out[2] = M3R * (ddq[2] - 9.81) + 314.1592653589793 * t29
+    t30 = ca.sign(dq[3]) # joint j4: coulomb_friction
+    FV4 = parameters[16]  # N m s/rad
+    FC4 = parameters[17]  # N m
+    IA4 = parameters[18]  # N m s^2/rad
+    t31 = FV4 * (20.0 * dq[3]) + FC4 * t30 + IA4 * (20.0 * ddq[3])
+    out[3] = t15 + 20.0 * t31
+    outputs = [_vector(out)]
+    names_in = ["q", "dq", "ddq", "parameters"]
+    names_out = ["effort"]
+    return ca.Function(name, inputs, outputs, names_in, names_out, {})
+
+
 def _regressor(name: str) -> ca.Function:
     """regressor(q, dq, ddq) -> matrix
 
@@ -484,22 +562,22 @@ def _regressor(name: str) -> ca.Function:
         0 ZZ1R, 1 ZZ2R, 2 MX2R, 3 MY2R, 4 M3R, 5 ZZ4, 6 MX4, 7 MY4, 8 FV1, 9 FC1, 10 FV2, 11 FC2, 12 IA2,
         13 FV3, 14 FC3, 15 IA3, 16 FV4, 17 FC4, 18 IA4
 
-    Operations: 87 (62 mul, 25 add, 0 neg), 4 trig, 4 other.
+    Operations: 87 (62 mul, 25 add, 0 neg), 4 trig, 4 other calls (sign, select and the like).
     """
     inputs = [ca.SX.sym("q", 4), ca.SX.sym("dq", 4), ca.SX.sym("ddq", 4)]
     [q, dq, ddq] = (ca.vertsplit(vector) for vector in inputs)
     out = [ca.SX(0)] * 76
     out[0] = 0.0625 * ddq[0]
-    t0 = ddq[0] + ddq[1]
+    t0 = ddq[0] + ddq[1] # link j2: motion
     out[1] = 0.0625 * t0
     out[20] = 0.1 * t0
     t1 = dq[0] + dq[1]
     t2 = t1 * t1
     t3 = ca.sin(q[1])
-    t4 = -0.0203125 * t3
+    t4 = -0.0203125 * t3 # link j2: velocities by those of the joints
     t5 = ca.cos(q[1])
     t6 = 0.0203125 * t5
-    t7 = 0.325 * (dq[0] * dq[0])
+    t7 = 0.325 * (dq[0] * dq[0]) # link j2: motion
     t8 = 0.325 * ddq[0]
     t9 = t3 * t7 + t5 * t8
     out[2] = t2 * t4 + t0 * t6 + 0.0625 * t9
@@ -507,45 +585,45 @@ def _regressor(name: str) -> ca.Function:
     t10 = t5 * t7 - t3 * t8
     out[3] = t0 * t4 - t2 * t6 + 0.0625 * t10
     out[22] = 0.1 * t10
-    t11 = -0.275 * t2 - t10
+    t11 = -0.275 * t2 - t10 # link j3: motion
     t12 = t9 + 0.275 * t0
-    t13 = t6 + 0.0171875
+    t13 = t6 + 0.0171875 # link j3: velocities by those of the joints
     out[4] = t12 * t13 - t11 * t4
     out[23] = 0.027500000000000004 * t12
     out[42] = 0.03183098861837907 * (ddq[2] - 9.81)
-    t14 = t0 - ddq[3]
+    t14 = t0 - ddq[3] # link j4: motion
     out[5] = 0.0625 * t14
     out[24] = 0.1 * t14
     out[62] = -0.5 * t14
     t15 = ca.sin(q[3])
     t16 = ca.cos(q[3])
     t17 = t15 * t11 + t16 * t12
-    t18 = 0.0625 * t17
-    t19 = dq[3] - t1
+    t18 = 0.0625 * t17 # link j4: columns
+    t19 = dq[3] - t1 # link j4: motion
     t20 = t19 * t19
-    t21 = t16 * t20 - t15 * t14
+    t21 = t16 * t20 - t15 * t14 # link j4: columns
     t22 = t15 * t20 + t16 * t14
     out[6] = t18 + (t21 * t4 + t22 * t13)
     out[25] = 1.6 * (t18 + 0.0171875 * t22)
     out[63] = -0.5 * t17
-    t23 = t15 * t12 - t16 * t11
-    t24 = -0.0625 * t23
+    t23 = t15 * t12 - t16 * t11 # link j4: motion
+    t24 = -0.0625 * t23 # link j4: columns
     out[7] = t24 + (t21 * t13 - t22 * t4)
     out[26] = 1.6 * (t24 + 0.0171875 * t21)
     out[64] = 0.5 * t23
     out[8] = 400.0 * dq[0]
-    t25 = ca.sign(dq[0])
+    t25 = ca.sign(dq[0]) # joint j1: coulomb_friction
     out[9] = 5.0 * t25
     out[29] = 250.0 * dq[1]
-    t26 = ca.sign(dq[1])
+    t26 = ca.sign(dq[1]) # joint j2: coulomb_friction
     out[30] = 5.0 * t26
     out[31] = 250.0 * ddq[1]
     out[51] = 3141.5926535897934 * dq[2]
-    t27 = ca.sign(dq[2])
+    t27 = ca.sign(dq[2]) # joint j3: coulomb_friction
     out[52] = 10.0 * t27
     out[53] = 3141.5926535897934 * ddq[2]
     out[73] = 200.0 * dq[3]
-    t28 = ca.sign(dq[3])
+    t28 = ca.sign(dq[3]) # joint j4: coulomb_friction
     out[74] = 10.0 * t28
     out[75] = 200.0 * ddq[3]
     outputs = [_matrix(out, 4, 19)]
@@ -573,13 +651,13 @@ def _regressor_standard(name: str) -> ca.Function:
         38 MZ4, 39 M4, 40 FV1, 41 FC1, 42 IA1, 43 FV2, 44 FC2, 45 IA2, 46 FV3, 47 FC3, 48 IA3, 49 FV4,
         50 FC4, 51 IA4
 
-    Operations: 101 (70 mul, 30 add, 1 neg), 4 trig, 4 other.
+    Operations: 101 (70 mul, 30 add, 1 neg), 4 trig, 4 other calls (sign, select and the like).
     """
     inputs = [ca.SX.sym("q", 4), ca.SX.sym("dq", 4), ca.SX.sym("ddq", 4)]
     [q, dq, ddq] = (ca.vertsplit(vector) for vector in inputs)
     out = [ca.SX(0)] * 208
     out[5] = 0.0625 * ddq[0]
-    t0 = ddq[0] + ddq[1]
+    t0 = ddq[0] + ddq[1] # link j2: motion
     t1 = 0.0625 * t0
     out[15] = t1
     t2 = 0.1 * t0
@@ -587,25 +665,25 @@ def _regressor_standard(name: str) -> ca.Function:
     t3 = dq[0] + dq[1]
     t4 = t3 * t3
     t5 = ca.sin(q[1])
-    t6 = -0.325 * t5
-    t7 = t4 * t6
+    t6 = -0.325 * t5 # link j2: velocities by those of the joints
+    t7 = t4 * t6 # link j2: columns
     t8 = ca.cos(q[1])
-    t9 = 0.325 * t8
-    t10 = 0.325 * (dq[0] * dq[0])
+    t9 = 0.325 * t8 # link j2: velocities by those of the joints
+    t10 = 0.325 * (dq[0] * dq[0]) # link j2: motion
     t11 = 0.325 * ddq[0]
     t12 = t5 * t10 + t8 * t11
     out[16] = 0.0625 * (t12 + (t7 + t0 * t9))
     out[68] = 0.1 * t12
-    t13 = t0 * t6
-    t14 = t8 * t10 - t5 * t11
+    t13 = t0 * t6 # link j2: columns
+    t14 = t8 * t10 - t5 * t11 # link j2: motion
     out[17] = 0.0625 * (t14 + (t13 - t4 * t9))
     t15 = 0.1 * t14
     out[69] = t15
     out[19] = 0.006601562500000001 * ddq[0]
     out[25] = t1
     out[77] = t2
-    t16 = t9 + 0.275
-    t17 = 0.275 * t0
+    t16 = t9 + 0.275 # link j3: velocities by those of the joints
+    t17 = 0.275 * t0 # link j3: motion
     t18 = t12 + t17
     out[26] = 0.0625 * (t18 + (t7 + t0 * t16))
     out[78] = 0.1 * (t17 + t18)
@@ -618,7 +696,7 @@ def _regressor_standard(name: str) -> ca.Function:
     out[81] = t21
     t22 = 0.03183098861837907 * (ddq[2] - 9.81)
     out[133] = t22
-    t23 = t0 - ddq[3]
+    t23 = t0 - ddq[3] # link j4: motion
     out[35] = 0.0625 * t23
     out[87] = 0.1 * t23
     out[191] = -0.5 * t23
@@ -627,12 +705,12 @@ def _regressor_standard(name: str) -> ca.Function:
     t26 = t24 * t19 + t25 * t18
     t27 = dq[3] - t3
     t28 = t27 * t27
-    t29 = t25 * t28 - t24 * t23
+    t29 = t25 * t28 - t24 * t23 # link j4: columns
     t30 = t24 * t28 + t25 * t23
     out[36] = 0.0625 * (t26 + (t6 * t29 + t16 * t30))
     out[88] = 0.1 * (t26 + 0.275 * t30)
     out[192] = -0.5 * t26
-    t31 = t25 * t19 - t24 * t18
+    t31 = t25 * t19 - t24 * t18 # link j4: motion
     out[37] = 0.0625 * (t31 + (t16 * t29 - t6 * t30))
     out[89] = 0.1 * (t31 + 0.275 * t29)
     out[193] = -0.5 * t31
@@ -640,19 +718,19 @@ def _regressor_standard(name: str) -> ca.Function:
     out[91] = t21
     out[143] = t22
     out[40] = 400.0 * dq[0]
-    t32 = ca.sign(dq[0])
+    t32 = ca.sign(dq[0]) # joint j1: coulomb_friction
     out[41] = 5.0 * t32
     out[42] = 400.0 * ddq[0]
     out[95] = 250.0 * dq[1]
-    t33 = ca.sign(dq[1])
+    t33 = ca.sign(dq[1]) # joint j2: coulomb_friction
     out[96] = 5.0 * t33
     out[97] = 250.0 * ddq[1]
     out[150] = 3141.5926535897934 * dq[2]
-    t34 = ca.sign(dq[2])
+    t34 = ca.sign(dq[2]) # joint j3: coulomb_friction
     out[151] = 10.0 * t34
     out[152] = 3141.5926535897934 * ddq[2]
     out[205] = 200.0 * dq[3]
-    t35 = ca.sign(dq[3])
+    t35 = ca.sign(dq[3]) # joint j4: coulomb_friction
     out[206] = 10.0 * t35
     out[207] = 200.0 * ddq[3]
     outputs = [_matrix(out, 4, 52)]
@@ -676,22 +754,22 @@ def _regressor_packed(name: str) -> ca.Function:
         0 ZZ1R, 1 ZZ2R, 2 MX2R, 3 MY2R, 4 M3R, 5 ZZ4, 6 MX4, 7 MY4, 8 FV1, 9 FC1, 10 FV2, 11 FC2, 12 IA2,
         13 FV3, 14 FC3, 15 IA3, 16 FV4, 17 FC4, 18 IA4
 
-    Operations: 87 (62 mul, 25 add, 0 neg), 4 trig, 4 other.
+    Operations: 87 (62 mul, 25 add, 0 neg), 4 trig, 4 other calls (sign, select and the like).
     """
     inputs = [ca.SX.sym("q", 4), ca.SX.sym("dq", 4), ca.SX.sym("ddq", 4)]
     [q, dq, ddq] = (ca.vertsplit(vector) for vector in inputs)
     out = [ca.SX(0)] * 30
     out[0] = 0.0625 * ddq[0]
-    t0 = ddq[0] + ddq[1]
+    t0 = ddq[0] + ddq[1] # link j2: motion
     out[1] = 0.0625 * t0
     out[10] = 0.1 * t0
     t1 = dq[0] + dq[1]
     t2 = t1 * t1
     t3 = ca.sin(q[1])
-    t4 = -0.0203125 * t3
+    t4 = -0.0203125 * t3 # link j2: velocities by those of the joints
     t5 = ca.cos(q[1])
     t6 = 0.0203125 * t5
-    t7 = 0.325 * (dq[0] * dq[0])
+    t7 = 0.325 * (dq[0] * dq[0]) # link j2: motion
     t8 = 0.325 * ddq[0]
     t9 = t3 * t7 + t5 * t8
     out[2] = t2 * t4 + t0 * t6 + 0.0625 * t9
@@ -699,45 +777,45 @@ def _regressor_packed(name: str) -> ca.Function:
     t10 = t5 * t7 - t3 * t8
     out[3] = t0 * t4 - t2 * t6 + 0.0625 * t10
     out[12] = 0.1 * t10
-    t11 = -0.275 * t2 - t10
+    t11 = -0.275 * t2 - t10 # link j3: motion
     t12 = t9 + 0.275 * t0
-    t13 = t6 + 0.0171875
+    t13 = t6 + 0.0171875 # link j3: velocities by those of the joints
     out[4] = t12 * t13 - t11 * t4
     out[13] = 0.027500000000000004 * t12
     out[20] = 0.03183098861837907 * (ddq[2] - 9.81)
-    t14 = t0 - ddq[3]
+    t14 = t0 - ddq[3] # link j4: motion
     out[5] = 0.0625 * t14
     out[14] = 0.1 * t14
     out[24] = -0.5 * t14
     t15 = ca.sin(q[3])
     t16 = ca.cos(q[3])
     t17 = t15 * t11 + t16 * t12
-    t18 = 0.0625 * t17
-    t19 = dq[3] - t1
+    t18 = 0.0625 * t17 # link j4: columns
+    t19 = dq[3] - t1 # link j4: motion
     t20 = t19 * t19
-    t21 = t16 * t20 - t15 * t14
+    t21 = t16 * t20 - t15 * t14 # link j4: columns
     t22 = t15 * t20 + t16 * t14
     out[6] = t18 + (t21 * t4 + t22 * t13)
     out[15] = 1.6 * (t18 + 0.0171875 * t22)
     out[25] = -0.5 * t17
-    t23 = t15 * t12 - t16 * t11
-    t24 = -0.0625 * t23
+    t23 = t15 * t12 - t16 * t11 # link j4: motion
+    t24 = -0.0625 * t23 # link j4: columns
     out[7] = t24 + (t21 * t13 - t22 * t4)
     out[16] = 1.6 * (t24 + 0.0171875 * t21)
     out[26] = 0.5 * t23
     out[8] = 400.0 * dq[0]
-    t25 = ca.sign(dq[0])
+    t25 = ca.sign(dq[0]) # joint j1: coulomb_friction
     out[9] = 5.0 * t25
     out[17] = 250.0 * dq[1]
-    t26 = ca.sign(dq[1])
+    t26 = ca.sign(dq[1]) # joint j2: coulomb_friction
     out[18] = 5.0 * t26
     out[19] = 250.0 * ddq[1]
     out[21] = 3141.5926535897934 * dq[2]
-    t27 = ca.sign(dq[2])
+    t27 = ca.sign(dq[2]) # joint j3: coulomb_friction
     out[22] = 10.0 * t27
     out[23] = 3141.5926535897934 * ddq[2]
     out[27] = 200.0 * dq[3]
-    t28 = ca.sign(dq[3])
+    t28 = ca.sign(dq[3]) # joint j4: coulomb_friction
     out[28] = 10.0 * t28
     out[29] = 200.0 * ddq[3]
     outputs = [_vector(out)]
@@ -763,23 +841,23 @@ def _slotine_li_regressor(name: str) -> ca.Function:
         0 ZZ1R, 1 ZZ2R, 2 MX2R, 3 MY2R, 4 M3R, 5 ZZ4, 6 MX4, 7 MY4, 8 FV1, 9 FC1, 10 FV2, 11 FC2, 12 IA2,
         13 FV3, 14 FC3, 15 IA3, 16 FV4, 17 FC4, 18 IA4
 
-    Operations: 89 (62 mul, 27 add, 0 neg), 4 trig, 4 other.
+    Operations: 89 (62 mul, 27 add, 0 neg), 4 trig, 4 other calls (sign, select and the like).
     """
     inputs = [ca.SX.sym("q", 4), ca.SX.sym("dq", 4), ca.SX.sym("dq_r", 4), ca.SX.sym("ddq_r", 4)]
     [q, dq, dq_r, ddq_r] = (ca.vertsplit(vector) for vector in inputs)
     out = [ca.SX(0)] * 76
     out[0] = 0.0625 * ddq_r[0]
-    t0 = ddq_r[0] + ddq_r[1]
+    t0 = ddq_r[0] + ddq_r[1] # link j2: motion
     out[1] = 0.0625 * t0
     out[20] = 0.1 * t0
     t1 = dq[0] + dq[1]
     t2 = dq_r[0] + dq_r[1]
     t3 = t1 * t2
     t4 = ca.sin(q[1])
-    t5 = -0.0203125 * t4
+    t5 = -0.0203125 * t4 # link j2: velocities by those of the joints
     t6 = ca.cos(q[1])
     t7 = 0.0203125 * t6
-    t8 = 0.325 * (dq[0] * dq_r[0])
+    t8 = 0.325 * (dq[0] * dq_r[0]) # link j2: motion
     t9 = 0.325 * ddq_r[0]
     t10 = t4 * t8 + t6 * t9
     out[2] = t5 * t3 + t7 * t0 + 0.0625 * t10
@@ -787,44 +865,44 @@ def _slotine_li_regressor(name: str) -> ca.Function:
     t11 = t6 * t8 - t4 * t9
     out[3] = t5 * t0 - t7 * t3 + 0.0625 * t11
     out[22] = 0.1 * t11
-    t12 = -0.275 * t3 - t11
+    t12 = -0.275 * t3 - t11 # link j3: motion
     t13 = t10 + 0.275 * t0
-    t14 = t7 + 0.0171875
+    t14 = t7 + 0.0171875 # link j3: velocities by those of the joints
     out[4] = t14 * t13 - t5 * t12
     out[23] = 0.027500000000000004 * t13
     out[42] = 0.03183098861837907 * (ddq_r[2] - 9.81)
-    t15 = t0 - ddq_r[3]
+    t15 = t0 - ddq_r[3] # link j4: motion
     out[5] = 0.0625 * t15
     out[24] = 0.1 * t15
     out[62] = -0.5 * t15
     t16 = (dq[3] - t1) * (dq_r[3] - t2)
     t17 = ca.cos(q[3])
     t18 = ca.sin(q[3])
-    t19 = t17 * t16 - t18 * t15
+    t19 = t17 * t16 - t18 * t15 # link j4: columns
     t20 = t18 * t16 + t17 * t15
-    t21 = t18 * t12 + t17 * t13
-    t22 = 0.0625 * t21
+    t21 = t18 * t12 + t17 * t13 # link j4: motion
+    t22 = 0.0625 * t21 # link j4: columns
     out[6] = t5 * t19 + t14 * t20 + t22
     out[25] = 1.6 * (t22 + 0.0171875 * t20)
     out[63] = -0.5 * t21
-    t23 = t18 * t13 - t17 * t12
-    t24 = -0.0625 * t23
+    t23 = t18 * t13 - t17 * t12 # link j4: motion
+    t24 = -0.0625 * t23 # link j4: columns
     out[7] = t14 * t19 - t5 * t20 + t24
     out[26] = 1.6 * (t24 + 0.0171875 * t19)
     out[64] = 0.5 * t23
     out[8] = 400.0 * dq[0]
-    t25 = ca.sign(dq[0])
+    t25 = ca.sign(dq[0]) # joint j1: coulomb_friction
     out[9] = 5.0 * t25
     out[29] = 250.0 * dq[1]
-    t26 = ca.sign(dq[1])
+    t26 = ca.sign(dq[1]) # joint j2: coulomb_friction
     out[30] = 5.0 * t26
     out[31] = 250.0 * ddq_r[1]
     out[51] = 3141.5926535897934 * dq[2]
-    t27 = ca.sign(dq[2])
+    t27 = ca.sign(dq[2]) # joint j3: coulomb_friction
     out[52] = 10.0 * t27
     out[53] = 3141.5926535897934 * ddq_r[2]
     out[73] = 200.0 * dq[3]
-    t28 = ca.sign(dq[3])
+    t28 = ca.sign(dq[3]) # joint j4: coulomb_friction
     out[74] = 10.0 * t28
     out[75] = 200.0 * ddq_r[3]
     outputs = [_matrix(out, 4, 19)]
@@ -844,73 +922,73 @@ def _inverse_dynamics_standard(name: str) -> ca.Function:
     in   parameters  [52]                                      standard parameters; norm at most 1e+09
     out  input       [4]   [A]                                 inputs: motor currents, efforts where undriven
 
-    Operations: 135 (81 mul, 54 add, 0 neg), 4 trig, 4 other.
+    Operations: 135 (81 mul, 54 add, 0 neg), 4 trig, 4 other calls (sign, select and the like).
     """
     inputs = [ca.SX.sym("q", 4), ca.SX.sym("dq", 4), ca.SX.sym("ddq", 4), ca.SX.sym("parameters", 52)]
     [q, dq, ddq, parameters] = (ca.vertsplit(vector) for vector in inputs)
     out = [ca.SX(0)] * 4
-    t0 = 0.325 * (dq[0] * dq[0])
+    t0 = 0.325 * (dq[0] * dq[0]) # link j2: motion
     t1 = ca.cos(q[1])
     t2 = 0.325 * ddq[0]
     t3 = ca.sin(q[1])
     t4 = t3 * t2 - t1 * t0
     t5 = dq[0] + dq[1]
     t6 = t5 * t5
-    t7 = t4 + -0.275 * t6
+    t7 = t4 + -0.275 * t6 # link j3: motion
     t8 = ca.sin(q[3])
-    t9 = t3 * t0 + t1 * t2
+    t9 = t3 * t0 + t1 * t2 # link j2: motion
     t10 = ddq[0] + ddq[1]
-    t11 = t9 + 0.275 * t10
+    t11 = t9 + 0.275 * t10 # link j3: motion
     t12 = ca.cos(q[3])
-    t13 = t8 * t7 + t12 * t11
+    t13 = t8 * t7 + t12 * t11 # link j4: motion
     t14 = t12 * t7 - t8 * t11
     t15 = t10 - ddq[3]
     ZZ4 = parameters[35]  # kg m^2
     MX4 = parameters[36]  # kg m
     MY4 = parameters[37]  # kg m
-    t16 = t15 * ZZ4 + (t13 * MX4 + t14 * MY4)
+    t16 = t15 * ZZ4 + (t13 * MX4 + t14 * MY4) # link j4: force and moment
     ZZ3 = parameters[25]  # kg m^2
     MX3 = parameters[26]  # kg m
     MY3 = parameters[27]  # kg m
-    t17 = t10 * ZZ3 + (t11 * MX3 + t7 * MY3) + t16
-    t18 = dq[3] - t5
+    t17 = t10 * ZZ3 + (t11 * MX3 + t7 * MY3) + t16 # link j4: what it passes on
+    t18 = dq[3] - t5 # link j4: motion
     t19 = t18 * t18
     M4 = parameters[39]  # kg
-    t20 = t19 * MX4 - t15 * MY4 - t14 * M4
+    t20 = t19 * MX4 - t15 * MY4 - t14 * M4 # link j4: force and moment
     t21 = t13 * M4 + (t19 * MY4 + t15 * MX4)
     M3 = parameters[29]  # kg
-    t22 = t11 * M3 + (t6 * MY3 + t10 * MX3) + (t8 * t20 + t12 * t21)
+    t22 = t11 * M3 + (t6 * MY3 + t10 * MX3) + (t8 * t20 + t12 * t21) # link j4: what it passes on
     ZZ2 = parameters[15]  # kg m^2
     MX2 = parameters[16]  # kg m
     MY2 = parameters[17]  # kg m
-    t23 = t10 * ZZ2 + (t9 * MX2 - t4 * MY2) + (t17 + 0.275 * t22)
-    t24 = t7 * M3 + (t10 * MY3 - t6 * MX3) + (t8 * t21 - t12 * t20)
+    t23 = t10 * ZZ2 + (t9 * MX2 - t4 * MY2) + (t17 + 0.275 * t22) # link j3: what it passes on
+    t24 = t7 * M3 + (t10 * MY3 - t6 * MX3) + (t8 * t21 - t12 * t20) # link j4: what it passes on
     M2 = parameters[19]  # kg
-    t25 = t4 * M2 - (t6 * MX2 + t10 * MY2) + t24
+    t25 = t4 * M2 - (t6 * MX2 + t10 * MY2) + t24 # link j3: what it passes on
     t26 = t9 * M2 + (t10 * MX2 - t6 * MY2) + t22
     ZZ1 = parameters[5]  # kg m^2
-    t27 = ddq[0] * ZZ1 + (t23 + 0.325 * (t3 * t25 + t1 * t26))
-    t28 = ca.sign(dq[0])
+    t27 = ddq[0] * ZZ1 + (t23 + 0.325 * (t3 * t25 + t1 * t26)) # link j2: what it passes on
+    t28 = ca.sign(dq[0]) # joint j1: coulomb_friction
     FV1 = parameters[40]  # N m s/rad
     FC1 = parameters[41]  # N m
     IA1 = parameters[42]  # N m s^2/rad
     t29 = 80.0 * dq[0] * FV1 + t28 * FC1 + 80.0 * ddq[0] * IA1
     out[0] = 5.0 * t29 + 0.0625 * t27
-    t30 = ca.sign(dq[1])
+    t30 = ca.sign(dq[1]) # joint j2: coulomb_friction
     FV2 = parameters[43]  # N m s/rad
     FC2 = parameters[44]  # N m
     IA2 = parameters[45]  # N m s^2/rad
     t31 = 50.0 * dq[1] * FV2 + t30 * FC2 + 50.0 * ddq[1] * IA2
     out[1] = 5.0 * t31 + 0.1 * t23
-    t32 = ca.sign(dq[2])
+    t32 = ca.sign(dq[2]) # joint j3: coulomb_friction
     FV3 = parameters[46]  # N m s/rad
     FC3 = parameters[47]  # N m
     IA3 = parameters[48]  # N m s^2/rad
     t33 = 314.1592653589793 * dq[2] * FV3 + t32 * FC3 + 314.1592653589793 * ddq[2] * IA3
-    t34 = ddq[2] - 9.81
+    t34 = ddq[2] - 9.81 # link j3: motion
     t35 = 10.0 * t33 + 0.03183098861837907 * (t34 * M3 + t34 * M4)
     out[2] = t35
-    t36 = ca.sign(dq[3])
+    t36 = ca.sign(dq[3]) # joint j4: coulomb_friction
     FV4 = parameters[49]  # N m s/rad
     FC4 = parameters[50]  # N m
     IA4 = parameters[51]  # N m s^2/rad
@@ -955,59 +1033,59 @@ def _bias_standard(name: str) -> ca.Function:
     in   parameters  [52]                              standard parameters; norm at most 1e+09
     out  input       [4]   [A]                         inputs: motor currents, efforts where undriven
 
-    Operations: 93 (59 mul, 34 add, 0 neg), 4 trig, 4 other.
+    Operations: 93 (59 mul, 34 add, 0 neg), 4 trig, 4 other calls (sign, select and the like).
     """
     inputs = [ca.SX.sym("q", 4), ca.SX.sym("dq", 4), ca.SX.sym("parameters", 52)]
     [q, dq, parameters] = (ca.vertsplit(vector) for vector in inputs)
     out = [ca.SX(0)] * 4
-    t0 = dq[0] + dq[1]
+    t0 = dq[0] + dq[1] # link j2: motion
     t1 = t0 * t0
     t2 = 0.325 * (dq[0] * dq[0])
     t3 = ca.cos(q[1])
     t4 = t3 * t2
-    t5 = -0.275 * t1 - t4
+    t5 = -0.275 * t1 - t4 # link j3: motion
     t6 = ca.cos(q[3])
     t7 = ca.sin(q[1])
-    t8 = t7 * t2
+    t8 = t7 * t2 # link j2: motion
     t9 = ca.sin(q[3])
-    t10 = t6 * t5 - t9 * t8
+    t10 = t6 * t5 - t9 * t8 # link j4: motion
     t11 = dq[3] - t0
     t12 = t11 * t11
     MX4 = parameters[36]  # kg m
     M4 = parameters[39]  # kg
-    t13 = t12 * MX4 - M4 * t10
-    t14 = t9 * t5 + t6 * t8
+    t13 = t12 * MX4 - M4 * t10 # link j4: force and moment
+    t14 = t9 * t5 + t6 * t8 # link j4: motion
     MY4 = parameters[37]  # kg m
-    t15 = M4 * t14 + t12 * MY4
+    t15 = M4 * t14 + t12 * MY4 # link j4: force and moment
     M3 = parameters[29]  # kg
     MX3 = parameters[26]  # kg m
-    t16 = M3 * t5 - t1 * MX3 + (t9 * t15 - t6 * t13)
+    t16 = M3 * t5 - t1 * MX3 + (t9 * t15 - t6 * t13) # link j4: what it passes on
     MY3 = parameters[27]  # kg m
     t17 = t8 * M3 + t1 * MY3 + (t9 * t13 + t6 * t15)
     M2 = parameters[19]  # kg
     MX2 = parameters[16]  # kg m
     MY2 = parameters[17]  # kg m
-    t18 = t7 * (t16 - (t4 * M2 + t1 * MX2)) + t3 * (t8 * M2 - t1 * MY2 + t17)
-    t19 = MX4 * t14 + MY4 * t10
-    t20 = t8 * MX3 + MY3 * t5 + t19 + 0.275 * t17
+    t18 = t7 * (t16 - (t4 * M2 + t1 * MX2)) + t3 * (t8 * M2 - t1 * MY2 + t17) # link j2: what it passes on
+    t19 = MX4 * t14 + MY4 * t10 # link j4: force and moment
+    t20 = t8 * MX3 + MY3 * t5 + t19 + 0.275 * t17 # link j3: what it passes on
     t21 = t8 * MX2 + t4 * MY2 + t20
-    t22 = ca.sign(dq[0])
+    t22 = ca.sign(dq[0]) # joint j1: coulomb_friction
     FV1 = parameters[40]  # N m s/rad
     FC1 = parameters[41]  # N m
     t23 = 5.0 * (80.0 * dq[0] * FV1 + t22 * FC1) + 0.0625 * (t21 + 0.325 * t18)
     out[0] = t23
-    t24 = ca.sign(dq[1])
+    t24 = ca.sign(dq[1]) # joint j2: coulomb_friction
     FV2 = parameters[43]  # N m s/rad
     FC2 = parameters[44]  # N m
     t25 = 5.0 * (50.0 * dq[1] * FV2 + t24 * FC2) + 0.1 * t21
     out[1] = t25
-    t26 = ca.sign(dq[2])
+    t26 = ca.sign(dq[2]) # joint j3: coulomb_friction
     FV3 = parameters[46]  # N m s/rad
     FC3 = parameters[47]  # N m
     t27 = (0.03183098861837907 * (-9.81 * M3 + -9.81 * M4) + 10.0 * (314.1592653589793 * dq[2] * FV3
         + t26 * FC3))
     out[2] = t27
-    t28 = ca.sign(dq[3])
+    t28 = ca.sign(dq[3]) # joint j4: coulomb_friction
     FV4 = parameters[49]  # N m s/rad
     FC4 = parameters[50]  # N m
     t29 = 10.0 * (20.0 * dq[3] * FV4 + t28 * FC4) + -0.5 * t19
@@ -1036,32 +1114,32 @@ def _mass_matrix_standard(name: str) -> ca.Function:
     t1 = ca.sin(q[3])
     MY4 = parameters[37]  # kg m
     MX4 = parameters[36]  # kg m
-    t2 = t0 * MY4 + t1 * MX4
+    t2 = t0 * MY4 + t1 * MX4 # link j4: column of the mass matrix
     t3 = ca.sin(q[1])
     t4 = t1 * MY4 - t0 * MX4
     MX3 = parameters[26]  # kg m
-    t5 = MX3 - t4
+    t5 = MX3 - t4 # link j4: inertia of it and all beyond
     M3 = parameters[29]  # kg
     M4 = parameters[39]  # kg
     t6 = M3 + M4
-    t7 = 0.275 * t6
+    t7 = 0.275 * t6 # link j3: column of the mass matrix
     t8 = ca.cos(q[1])
     MY3 = parameters[27]  # kg m
     MY2 = parameters[17]  # kg m
     MX2 = parameters[16]  # kg m
-    t9 = t3 * (MY3 + t2 - MY2) + t8 * (MX2 + (t5 + t7))
+    t9 = t3 * (MY3 + t2 - MY2) + t8 * (MX2 + (t5 + t7)) # link j2: column of the mass matrix
     ZZ2 = parameters[15]  # kg m^2
     ZZ3 = parameters[25]  # kg m^2
     ZZ4 = parameters[35]  # kg m^2
-    t10 = ZZ2 + (ZZ3 + ZZ4 + 0.275 * (t7 + 2.0 * t5))
+    t10 = ZZ2 + (ZZ3 + ZZ4 + 0.275 * (t7 + 2.0 * t5)) # link j3: inertia of it and all beyond
     M2 = parameters[19]  # kg
-    t11 = t10 + 0.325 * (0.325 * (M2 + t6) + 2.0 * t9)
+    t11 = t10 + 0.325 * (0.325 * (M2 + t6) + 2.0 * t9) # link j2: inertia of it and all beyond
     ZZ1 = parameters[5]  # kg m^2
     IA1 = parameters[42]  # N m s^2/rad
     out[0] = ZZ1 + t11 + 6400.0 * IA1
-    t12 = t10 + 0.325 * t9
+    t12 = t10 + 0.325 * t9 # link j2: column of the mass matrix
     out[1] = t12
-    t13 = 0.275 * t4 - ZZ4
+    t13 = 0.275 * t4 - ZZ4 # link j4: column of the mass matrix
     t14 = t13 + 0.325 * (t8 * t4 - t3 * t2)
     out[3] = t14
     out[4] = t12
@@ -1092,14 +1170,14 @@ def _forward_dynamics_standard(name: str) -> ca.Function:
     in   parameters  [52]                                      standard parameters; norm at most 1e+09
     out  ddq         [4]   [rad/s^2, rad/s^2, m/s^2, rad/s^2]  joint accelerations
 
-    Operations: 174 (99 mul, 75 add, 0 neg), 4 div, 4 trig, 4 other.
+    Operations: 174 (99 mul, 75 add, 0 neg), 4 div, 4 trig, 4 other calls (sign, select and the like).
     """
     inputs = [ca.SX.sym("q", 4), ca.SX.sym("dq", 4), ca.SX.sym("input", 4), ca.SX.sym("parameters", 52)]
     [q, dq, input, parameters] = (ca.vertsplit(vector) for vector in inputs)
     out = [ca.SX(0)] * 4
     M3 = parameters[29]  # kg
     M4 = parameters[39]  # kg
-    t0 = M3 + M4
+    t0 = M3 + M4 # link j4: inertia of it and all beyond
     IA3 = parameters[48]  # N m s^2/rad
     t1 = t0 + 98696.04401089359 * IA3
     ZZ4 = parameters[35]  # kg m^2
@@ -1109,67 +1187,67 @@ def _forward_dynamics_standard(name: str) -> ca.Function:
     t4 = ca.cos(q[3])
     MX4 = parameters[36]  # kg m
     MY4 = parameters[37]  # kg m
-    t5 = t4 * MX4 - t3 * MY4
+    t5 = t4 * MX4 - t3 * MY4 # link j4: column of the mass matrix
     t6 = ZZ4 + 0.275 * t5
     t7 = 1.0 / t2
     t8 = t6 * t7
     MX3 = parameters[26]  # kg m
-    t9 = MX3 + t5
-    t10 = 0.275 * t0
+    t9 = MX3 + t5 # link j4: inertia of it and all beyond
+    t10 = 0.275 * t0 # link j3: column of the mass matrix
     ZZ2 = parameters[15]  # kg m^2
     ZZ3 = parameters[25]  # kg m^2
-    t11 = ZZ2 + (ZZ3 + ZZ4 + 0.275 * (t10 + 2.0 * t9))
+    t11 = ZZ2 + (ZZ3 + ZZ4 + 0.275 * (t10 + 2.0 * t9)) # link j3: inertia of it and all beyond
     IA2 = parameters[45]  # N m s^2/rad
     t12 = t11 + 2500.0 * IA2
     t13 = t12 - t6 * t8
     t14 = t13 + -1e-09 * t12
-    t15 = t4 * MY4 + t3 * MX4
+    t15 = t4 * MY4 + t3 * MX4 # link j4: column of the mass matrix
     t16 = ca.sin(q[1])
     t17 = ca.cos(q[1])
     MY2 = parameters[17]  # kg m
     MY3 = parameters[27]  # kg m
     MX2 = parameters[16]  # kg m
-    t18 = t16 * (MY2 - (MY3 + t15)) - t17 * (MX2 + (t9 + t10))
-    t19 = t6 + 0.325 * (t16 * t15 + t17 * t5)
+    t18 = t16 * (MY2 - (MY3 + t15)) - t17 * (MX2 + (t9 + t10)) # link j2: column of the mass matrix
+    t19 = t6 + 0.325 * (t16 * t15 + t17 * t5) # link j4: column of the mass matrix
     t20 = 0.325 * t18 - t11 + t19 * t8
     t21 = 1.0 / t13
     t22 = t20 * t21
     t23 = t19 * t7
     M2 = parameters[19]  # kg
-    t24 = t11 + 0.325 * (0.325 * (M2 + t0) + -2.0 * t18)
+    t24 = t11 + 0.325 * (0.325 * (M2 + t0) + -2.0 * t18) # link j2: inertia of it and all beyond
     ZZ1 = parameters[5]  # kg m^2
     IA1 = parameters[42]  # N m s^2/rad
     t25 = ZZ1 + t24 + 6400.0 * IA1
     t26 = t25 - t19 * t23 - t20 * t22
     t27 = t26 + -1e-09 * t25
-    t28 = dq[0] + dq[1]
+    t28 = dq[0] + dq[1] # link j2: motion
     t29 = t28 * t28
     t30 = 0.325 * (dq[0] * dq[0])
     t31 = t17 * t30
-    t32 = t31 + 0.275 * t29
-    t33 = t16 * t30
-    t34 = t4 * t32 + t3 * t33
+    t32 = t31 + 0.275 * t29 # link j3: motion
+    t33 = t16 * t30 # link j2: motion
+    t34 = t4 * t32 + t3 * t33 # link j4: motion
     t35 = t28 - dq[3]
     t36 = t35 * t35
-    t37 = M4 * t34 + t36 * MX4
-    t38 = t3 * t32 - t4 * t33
-    t39 = M4 * t38 - t36 * MY4
-    t40 = M3 * t32 + t29 * MX3 + (t4 * t37 + t3 * t39)
+    t37 = M4 * t34 + t36 * MX4 # link j4: force and moment
+    t38 = t3 * t32 - t4 * t33 # link j4: motion
+    t39 = M4 * t38 - t36 * MY4 # link j4: force and moment
+    t40 = M3 * t32 + t29 * MX3 + (t4 * t37 + t3 * t39) # link j4: what it passes on
     t41 = t4 * t39 - t3 * t37 - (t33 * M3 + t29 * MY3)
-    t42 = t16 * (t31 * M2 + t29 * MX2 + t40) + t17 * (t29 * MY2 - t33 * M2 + t41)
-    t43 = MX4 * t38 + MY4 * t34
-    t44 = MY3 * t32 - t33 * MX3 + t43 + 0.275 * t41
+    t42 = t16 * (t31 * M2 + t29 * MX2 + t40) + t17 * (t29 * MY2 - t33 * M2 + t41) # link j2: what it passes on
+    t43 = MX4 * t38 + MY4 * t34 # link j4: force and moment
+    t44 = MY3 * t32 - t33 * MX3 + t43 + 0.275 * t41 # link j3: what it passes on
     t45 = t44 - (t33 * MX2 + t31 * MY2)
-    t46 = ca.sign(dq[0])
+    t46 = ca.sign(dq[0]) # joint j1: coulomb_friction
     FV1 = parameters[40]  # N m s/rad
     FC1 = parameters[41]  # N m
     t47 = 80.0 * (-80.0 * dq[0] * FV1 - t46 * FC1) + (t45 + 0.325 * t42)
-    t48 = ca.sign(dq[3])
+    t48 = ca.sign(dq[3]) # joint j4: coulomb_friction
     FV4 = parameters[49]  # N m s/rad
     FC4 = parameters[50]  # N m
     t49 = 20.0 * (-20.0 * dq[3] * FV4 - t48 * FC4) - t43
     t50 = 2.0 * input[3] + t49
-    t51 = ca.sign(dq[1])
+    t51 = ca.sign(dq[1]) # joint j2: coulomb_friction
     FV2 = parameters[43]  # N m s/rad
     FC2 = parameters[44]  # N m
     t52 = 50.0 * (50.0 * dq[1] * FV2 + t51 * FC2) - t45
@@ -1180,7 +1258,7 @@ def _forward_dynamics_standard(name: str) -> ca.Function:
     out[0] = t56
     t57 = t53 * t21 + t22 * t56
     out[1] = t57
-    t58 = ca.sign(dq[2])
+    t58 = ca.sign(dq[2]) # joint j3: coulomb_friction
     FV3 = parameters[46]  # N m s/rad
     FC3 = parameters[47]  # N m
     t59 = 314.1592653589793 * (-314.1592653589793 * dq[2] * FV3 - t58 * FC3) + (9.81 * M3 + 9.81 * M4)
@@ -1210,13 +1288,13 @@ def _energy_standard(name: str) -> ca.Function:
     [q, dq, parameters] = (ca.vertsplit(vector) for vector in inputs)
     out_kinetic = [ca.SX(0)] * 1
     out_potential = [ca.SX(0)] * 1
-    t0 = 0.325 * dq[0]
+    t0 = 0.325 * dq[0] # link j2: velocity of its origin
     t1 = ca.sin(q[1])
     t2 = t1 * t0
     t3 = t2 * t2
     t4 = ca.cos(q[1])
     t5 = t4 * t0
-    t6 = dq[0] + dq[1]
+    t6 = dq[0] + dq[1] # link j2: motion
     ZZ2 = parameters[15]  # kg m^2
     M2 = parameters[19]  # kg
     t7 = t6 * (t6 * ZZ2) + M2 * (t3 + t5 * t5)
@@ -1225,7 +1303,7 @@ def _energy_standard(name: str) -> ca.Function:
     MX2 = parameters[16]  # kg m
     MY2 = parameters[17]  # kg m
     t9 = 0.5 * (dq[0] * (dq[0] * ZZ1)) + 0.5 * t7 + (MX2 * (t6 * t5) - MY2 * t8)
-    t10 = t5 + 0.275 * t6
+    t10 = t5 + 0.275 * t6 # link j3: velocity of its origin
     t11 = dq[2] * dq[2]
     ZZ3 = parameters[25]  # kg m^2
     M3 = parameters[29]  # kg
@@ -1235,9 +1313,9 @@ def _energy_standard(name: str) -> ca.Function:
     t13 = t9 + 0.5 * t12 + (MX3 * (t6 * t10) + MY3 * t8)
     t14 = ca.sin(q[3])
     t15 = ca.cos(q[3])
-    t16 = t15 * t2 - t14 * t10
+    t16 = t15 * t2 - t14 * t10 # link j4: velocity of its origin
     t17 = t14 * t2 + t15 * t10
-    t18 = dq[3] - t6
+    t18 = dq[3] - t6 # link j4: motion
     ZZ4 = parameters[35]  # kg m^2
     M4 = parameters[39]  # kg
     t19 = t18 * (t18 * ZZ4) + M4 * (t11 + (t16 * t16 + t17 * t17))
@@ -1263,6 +1341,95 @@ def _energy_standard(name: str) -> ca.Function:
     outputs = [_vector(out_kinetic), _vector(out_potential)]
     names_in = ["q", "dq", "parameters"]
     names_out = ["kinetic", "potential"]
+    return ca.Function(name, inputs, outputs, names_in, names_out, {})
+
+
+def _joint_effort_standard(name: str) -> ca.Function:
+    """joint_effort_standard(q, dq, ddq, parameters) -> effort
+
+    Efforts of the drives at the joints that give the accelerations ddq in the state q, dq; standard
+    parameters.
+
+    in   q           [4]   [rad, rad, m, rad]                  joint coordinates; norm at most 10000
+    in   dq          [4]   [rad/s, rad/s, m/s, rad/s]          joint velocities; norm at most 100000
+    in   ddq         [4]   [rad/s^2, rad/s^2, m/s^2, rad/s^2]  joint accelerations; norm at most 1e+08
+    in   parameters  [52]                                      standard parameters; norm at most 1e+09
+    out  effort      [4]   [N m, N m, N, N m]                  efforts at the joints
+
+    Operations: 131 (77 mul, 54 add, 0 neg), 4 trig, 4 other calls (sign, select and the like).
+    """
+    inputs = [ca.SX.sym("q", 4), ca.SX.sym("dq", 4), ca.SX.sym("ddq", 4), ca.SX.sym("parameters", 52)]
+    [q, dq, ddq, parameters] = (ca.vertsplit(vector) for vector in inputs)
+    out = [ca.SX(0)] * 4
+    t0 = 0.325 * (dq[0] * dq[0]) # link j2: motion
+    t1 = ca.cos(q[1])
+    t2 = 0.325 * ddq[0]
+    t3 = ca.sin(q[1])
+    t4 = t3 * t2 - t1 * t0
+    t5 = dq[0] + dq[1]
+    t6 = t5 * t5
+    t7 = t4 + -0.275 * t6 # link j3: motion
+    t8 = ca.sin(q[3])
+    t9 = t3 * t0 + t1 * t2 # link j2: motion
+    t10 = ddq[0] + ddq[1]
+    t11 = t9 + 0.275 * t10 # link j3: motion
+    t12 = ca.cos(q[3])
+    t13 = t8 * t7 + t12 * t11 # link j4: motion
+    t14 = t8 * t11 - t12 * t7
+    t15 = t10 - ddq[3]
+    MY4 = parameters[37]  # kg m
+    MX4 = parameters[36]  # kg m
+    ZZ4 = parameters[35]  # kg m^2
+    t16 = t14 * MY4 - t13 * MX4 - t15 * ZZ4 # link j4: force and moment
+    ZZ3 = parameters[25]  # kg m^2
+    MX3 = parameters[26]  # kg m
+    MY3 = parameters[27]  # kg m
+    t17 = t10 * ZZ3 + (t11 * MX3 + t7 * MY3) - t16 # link j4: what it passes on
+    t18 = dq[3] - t5 # link j4: motion
+    t19 = t18 * t18
+    M4 = parameters[39]  # kg
+    t20 = t14 * M4 + (t19 * MX4 - t15 * MY4) # link j4: force and moment
+    t21 = t13 * M4 + (t19 * MY4 + t15 * MX4)
+    M3 = parameters[29]  # kg
+    t22 = t11 * M3 + (t6 * MY3 + t10 * MX3) + (t8 * t20 + t12 * t21) # link j4: what it passes on
+    ZZ2 = parameters[15]  # kg m^2
+    MX2 = parameters[16]  # kg m
+    MY2 = parameters[17]  # kg m
+    t23 = t10 * ZZ2 + (t9 * MX2 - t4 * MY2) + (t17 + 0.275 * t22) # link j3: what it passes on
+    t24 = t7 * M3 + (t10 * MY3 - t6 * MX3) + (t8 * t21 - t12 * t20) # link j4: what it passes on
+    M2 = parameters[19]  # kg
+    t25 = t4 * M2 - (t6 * MX2 + t10 * MY2) + t24 # link j3: what it passes on
+    t26 = t9 * M2 + (t10 * MX2 - t6 * MY2) + t22
+    ZZ1 = parameters[5]  # kg m^2
+    t27 = ddq[0] * ZZ1 + (t23 + 0.325 * (t3 * t25 + t1 * t26)) # link j2: what it passes on
+    t28 = ca.sign(dq[0]) # joint j1: coulomb_friction
+    FV1 = parameters[40]  # N m s/rad
+    FC1 = parameters[41]  # N m
+    IA1 = parameters[42]  # N m s^2/rad
+    t29 = 80.0 * dq[0] * FV1 + t28 * FC1 + 80.0 * ddq[0] * IA1
+    out[0] = t27 + 80.0 * t29
+    t30 = ca.sign(dq[1]) # joint j2: coulomb_friction
+    FV2 = parameters[43]  # N m s/rad
+    FC2 = parameters[44]  # N m
+    IA2 = parameters[45]  # N m s^2/rad
+    t31 = 50.0 * dq[1] * FV2 + t30 * FC2 + 50.0 * ddq[1] * IA2
+    out[1] = t23 + 50.0 * t31
+    t32 = ddq[2] - 9.81 # link j3: motion
+    t33 = ca.sign(dq[2]) # joint j3: coulomb_friction
+    FV3 = parameters[46]  # N m s/rad
+    FC3 = parameters[47]  # N m
+    IA3 = parameters[48]  # N m s^2/rad
+    t34 = 314.1592653589793 * dq[2] * FV3 + t33 * FC3 + 314.1592653589793 * ddq[2] * IA3
+    out[2] = t32 * M3 + t32 * M4 + 314.1592653589793 * t34
+    t35 = ca.sign(dq[3]) # joint j4: coulomb_friction
+    FV4 = parameters[49]  # N m s/rad
+    FC4 = parameters[50]  # N m
+    IA4 = parameters[51]  # N m s^2/rad
+    t36 = 20.0 * dq[3] * FV4 + t35 * FC4 + 20.0 * ddq[3] * IA4
+    out[3] = t16 + 20.0 * t36
+    outputs = [_vector(out)]
+    names_in = ["q", "dq", "ddq", "parameters"]
+    names_out = ["effort"]
     return ca.Function(name, inputs, outputs, names_in, names_out, {})
 
 
@@ -1296,7 +1463,7 @@ def _forward_kinematics(name: str) -> ca.Function:
     out_T_j1[15] = 1.0
     t2 = ca.cos(q[1])
     t3 = ca.sin(q[1])
-    t4 = t0 * t2 - t1 * t3
+    t4 = t0 * t2 - t1 * t3 # link j2: pose
     out_T_j2[0] = t4
     t5 = t0 * t3 + t1 * t2
     out_T_j2[1] = -t5
@@ -1311,7 +1478,7 @@ def _forward_kinematics(name: str) -> ca.Function:
     out_T_j2[15] = 1.0
     out_T_j3[0] = t4
     out_T_j3[1] = t5
-    t8 = t6 + 0.275 * t4
+    t8 = t6 + 0.275 * t4 # link j3: pose
     out_T_j3[3] = t8
     out_T_j3[4] = t5
     out_T_j3[5] = -t4
@@ -1323,7 +1490,7 @@ def _forward_kinematics(name: str) -> ca.Function:
     out_T_j3[15] = 1.0
     t11 = ca.cos(q[3])
     t12 = ca.sin(q[3])
-    t13 = t11 * t4 + t12 * t5
+    t13 = t11 * t4 + t12 * t5 # link j4: pose
     out_T_j4[0] = t13
     t14 = t11 * t5 - t12 * t4
     out_T_j4[1] = t14
@@ -1358,7 +1525,7 @@ def _jacobian(name: str) -> ca.Function:
     t1 = ca.sin(q[1])
     t2 = ca.sin(q[0])
     t3 = ca.cos(q[1])
-    t4 = -0.275 * (t0 * t1 + t2 * t3)
+    t4 = -0.275 * (t0 * t1 + t2 * t3) # link j3: pose
     out[0] = -0.325 * t2 + t4
     out[1] = t4
     t5 = 0.275 * (t0 * t3 - t2 * t1)
@@ -1453,8 +1620,8 @@ def _drive_gain(name: str) -> ca.Function:
 
     Joint effort per input.
 
-    in   q     [4]  [rad, rad, m, rad]            joint coordinates; norm at most 10000
-    out  gain  [4]  [(N m, N m, N, N m) per (A)]  drive gains K
+    in   q     [4]  [rad, rad, m, rad]          joint coordinates; norm at most 10000
+    out  gain  [4]  [(N m, N m, N, N m) per A]  drive gains K
 
     Operations: 0 (0 mul, 0 add, 0 neg).
     """
@@ -1477,20 +1644,18 @@ def _inverse_dynamics_derivatives(name: str) -> ca.Function:
     Inputs that give the accelerations ddq, and their derivatives; at a kink of a law, as of dry
     friction at rest, the mean of both sides; base parameters.
 
-    in   q             [4]   [rad, rad, m, rad]                            joint coordinates; norm at most
-                                                                           10000
-    in   dq            [4]   [rad/s, rad/s, m/s, rad/s]                    joint velocities; norm at most
-                                                                           100000
-    in   ddq           [4]   [rad/s^2, rad/s^2, m/s^2, rad/s^2]            joint accelerations; norm at most
-                                                                           1e+08
-    in   parameters    [19]                                                base parameters; norm at most 1e+09
-    out  input         [4]   [A]                                           inputs: motor currents, efforts
-                                                                           where undriven
-    out  input_by_q    [16]  [(A) per (rad, rad, m, rad)]                  d input / d q; 4 x 4, row-major
-    out  input_by_dq   [16]  [(A) per (rad/s, rad/s, m/s, rad/s)]          d input / d dq; 4 x 4, row-major
-    out  input_by_ddq  [16]  [(A) per (rad/s^2, rad/s^2, m/s^2, rad/s^2)]  d input / d ddq; 4 x 4, row-major
+    in   q             [4]   [rad, rad, m, rad]                          joint coordinates; norm at most 10000
+    in   dq            [4]   [rad/s, rad/s, m/s, rad/s]                  joint velocities; norm at most 100000
+    in   ddq           [4]   [rad/s^2, rad/s^2, m/s^2, rad/s^2]          joint accelerations; norm at most
+                                                                         1e+08
+    in   parameters    [19]                                              base parameters; norm at most 1e+09
+    out  input         [4]   [A]                                         inputs: motor currents, efforts where
+                                                                         undriven
+    out  input_by_q    [16]  [A per (rad, rad, m, rad)]                  d input / d q; 4 x 4, row-major
+    out  input_by_dq   [16]  [A per (rad/s, rad/s, m/s, rad/s)]          d input / d dq; 4 x 4, row-major
+    out  input_by_ddq  [16]  [A per (rad/s^2, rad/s^2, m/s^2, rad/s^2)]  d input / d ddq; 4 x 4, row-major
 
-    Operations: 267 (174 mul, 93 add, 0 neg), 4 trig, 4 other.
+    Operations: 267 (174 mul, 93 add, 0 neg), 4 trig, 4 other calls (sign, select and the like).
     """
     inputs = [ca.SX.sym("q", 4), ca.SX.sym("dq", 4), ca.SX.sym("ddq", 4), ca.SX.sym("parameters", 19)]
     [q, dq, ddq, parameters] = (ca.vertsplit(vector) for vector in inputs)
@@ -1498,60 +1663,60 @@ def _inverse_dynamics_derivatives(name: str) -> ca.Function:
     out_input_by_q = [ca.SX(0)] * 16
     out_input_by_dq = [ca.SX(0)] * 16
     out_input_by_ddq = [ca.SX(0)] * 16
-    t0 = dq[0] + dq[1]
+    t0 = dq[0] + dq[1] # link j2: motion
     t1 = t0 * t0
     t2 = 0.325 * (dq[0] * dq[0])
     t3 = ca.cos(q[1])
     t4 = -0.325 * ddq[0]
     t5 = ca.sin(q[1])
     t6 = t3 * t2 + t5 * t4
-    t7 = -0.275 * t1 - t6
+    t7 = -0.275 * t1 - t6 # link j3: motion
     t8 = ca.sin(q[3])
-    t9 = t3 * t4 - t5 * t2
+    t9 = t3 * t4 - t5 * t2 # link j2: motion
     t10 = ddq[0] + ddq[1]
-    t11 = t9 + -0.275 * t10
+    t11 = t9 + -0.275 * t10 # link j3: motion
     t12 = ca.cos(q[3])
-    t13 = t12 * t11 - t8 * t7
+    t13 = t12 * t11 - t8 * t7 # link j4: motion
     t14 = t12 * t7 + t8 * t11
     t15 = t10 - ddq[3]
     ZZ4 = parameters[5]  # kg m^2
     MY4 = parameters[7]  # kg m
     MX4 = parameters[6]  # kg m
-    t16 = ZZ4 * t15 + (MY4 * t14 - MX4 * t13)
-    t17 = t0 - dq[3]
+    t16 = ZZ4 * t15 + (MY4 * t14 - MX4 * t13) # link j4: force and moment
+    t17 = t0 - dq[3] # link j4: motion
     t18 = t17 * t17
-    t19 = MY4 * t15 - MX4 * t18
+    t19 = MY4 * t15 - MX4 * t18 # link j4: force and moment
     t20 = MY4 * t18 + MX4 * t15
-    t21 = t8 * t19 - t12 * t20
+    t21 = t8 * t19 - t12 * t20 # link j4: what it passes on
     M3R = parameters[4]  # kg
     t22 = M3R * t11 + t21
     ZZ2R = parameters[1]  # kg m^2
     MY2R = parameters[3]  # kg m
     MX2R = parameters[2]  # kg m
-    t23 = ZZ2R * t10 + (MY2R * t6 - MX2R * t9) + (t16 + -0.275 * t22)
-    t24 = t12 * t19 + t8 * t20
-    t25 = M3R * t7 + t24 - (MX2R * t1 + MY2R * t10)
+    t23 = ZZ2R * t10 + (MY2R * t6 - MX2R * t9) + (t16 + -0.275 * t22) # link j3: what it passes on
+    t24 = t12 * t19 + t8 * t20 # link j4: what it passes on
+    t25 = M3R * t7 + t24 - (MX2R * t1 + MY2R * t10) # link j3: what it passes on
     t26 = MY2R * t1 - MX2R * t10 + t22
     ZZ1R = parameters[0]  # kg m^2
-    t27 = ZZ1R * ddq[0] + (t23 + 0.325 * (t5 * t25 - t3 * t26))
-    t28 = ca.sign(dq[0])
+    t27 = ZZ1R * ddq[0] + (t23 + 0.325 * (t5 * t25 - t3 * t26)) # link j2: what it passes on
+    t28 = ca.sign(dq[0]) # joint j1: coulomb_friction
     FV1 = parameters[8]  # N m s/rad
     FC1 = parameters[9]  # N m
     t29 = 5.0 * (FV1 * (80.0 * dq[0]) + FC1 * t28) + 0.0625 * t27
     out_input[0] = t29
-    t30 = ca.sign(dq[1])
+    t30 = ca.sign(dq[1]) # joint j2: coulomb_friction
     FV2 = parameters[10]  # N m s/rad
     FC2 = parameters[11]  # N m
     IA2 = parameters[12]  # N m s^2/rad
     t31 = FV2 * (50.0 * dq[1]) + FC2 * t30 + IA2 * (50.0 * ddq[1])
     out_input[1] = 5.0 * t31 + 0.1 * t23
-    t32 = ca.sign(dq[2])
+    t32 = ca.sign(dq[2]) # joint j3: coulomb_friction
     FV3 = parameters[13]  # N m s/rad
     FC3 = parameters[14]  # N m
     IA3 = parameters[15]  # N m s^2/rad
     t33 = FV3 * (314.1592653589793 * dq[2]) + FC3 * t32 + IA3 * (314.1592653589793 * ddq[2])
     out_input[2] = 10.0 * t33 + 0.03183098861837907 * (M3R * (ddq[2] - 9.81))
-    t34 = ca.sign(dq[3])
+    t34 = ca.sign(dq[3]) # joint j4: coulomb_friction
     FV4 = parameters[16]  # N m s/rad
     FC4 = parameters[17]  # N m
     IA4 = parameters[18]  # N m s^2/rad
@@ -1559,36 +1724,36 @@ def _inverse_dynamics_derivatives(name: str) -> ca.Function:
     out_input[3] = 10.0 * t35 + -0.5 * t16
     t36 = MY4 * t17
     t37 = MX4 * t17
-    t38 = t12 * t36 + t8 * t37
-    t39 = t38 - MY2R * t0
-    t40 = -0.275 * t0
-    t41 = t8 * t36 - t12 * t37 + M3R * t40 - MX2R * t0
-    t42 = t12 * MY4 + t8 * MX4
-    t43 = t42 - MY2R
-    t44 = t8 * MY4 - t12 * MX4
-    t45 = 0.275 * M3R
-    t46 = MX2R + (t45 - t44)
-    t47 = t5 * t46 - t3 * t43
-    t48 = 0.325 * (t3 * t39 + t5 * t41) + t47 * (0.325 * dq[0])
-    t49 = dq[2] * (q[2] * M3R)
+    t38 = t12 * t36 + t8 * t37 # link j4: inertia, momentum beyond
+    t39 = t38 - MY2R * t0 # link j3: inertia, momentum beyond
+    t40 = -0.275 * t0 # link j3: velocity of its origin
+    t41 = t8 * t36 - t12 * t37 + M3R * t40 - MX2R * t0 # link j3: inertia, momentum beyond
+    t42 = t12 * MY4 + t8 * MX4 # link j4: column of the mass matrix
+    t43 = t42 - MY2R # link j3: inertia of it and all beyond
+    t44 = t8 * MY4 - t12 * MX4 # link j4: column of the mass matrix
+    t45 = 0.275 * M3R # link j3: column of the mass matrix
+    t46 = MX2R + (t45 - t44) # link j3: inertia of it and all beyond
+    t47 = t5 * t46 - t3 * t43 # link j2: column of the mass matrix
+    t48 = 0.325 * (t3 * t39 + t5 * t41) + t47 * (0.325 * dq[0]) # link j2: inertia, momentum beyond
+    t49 = dq[2] * (q[2] * M3R) # link j3: inertia, momentum beyond
     t50 = 0.275 * t38 + (t42 * t40 + t49) - t49
     out_input_by_dq[0] = 400.0 * FV1 + 0.125 * (t50 + t48)
-    t51 = 2.0 * t50
+    t51 = 2.0 * t50 # link j2: derivatives
     t52 = 0.65 * dq[0]
     out_input_by_dq[4] = 0.1 * (t51 + t47 * t52)
-    t53 = t42 * (0.55 * t0)
+    t53 = t42 * (0.55 * t0) # link j4: derivatives
     t54 = 0.5 * (t53 + (t3 * t42 + t5 * t44) * t52)
     out_input_by_dq[12] = t54
-    t55 = t5 * t43 + t3 * t46
-    t56 = ZZ2R + (ZZ4 + 0.275 * (-2.0 * t44 + t45))
-    t57 = ZZ1R + (t56 + 0.325 * (0.325 * M3R + 2.0 * t55))
+    t55 = t5 * t43 + t3 * t46 # link j2: column of the mass matrix
+    t56 = ZZ2R + (ZZ4 + 0.275 * (-2.0 * t44 + t45)) # link j3: inertia of it and all beyond
+    t57 = ZZ1R + (t56 + 0.325 * (0.325 * M3R + 2.0 * t55)) # link j2: inertia of it and all beyond
     out_input_by_ddq[0] = 0.0625 * t57
-    t58 = t56 + 0.325 * t55
+    t58 = t56 + 0.325 * t55 # link j2: column of the mass matrix
     out_input_by_ddq[4] = 0.1 * t58
-    t59 = 0.275 * t44 - ZZ4
+    t59 = 0.275 * t44 - ZZ4 # link j4: column of the mass matrix
     t60 = t59 + 0.325 * (t3 * t44 - t5 * t42)
     out_input_by_ddq[12] = 0.5 * t60
-    t61 = t46 * t6 - t43 * t9
+    t61 = t46 * t6 - t43 * t9 # link j2: derivatives
     t62 = t5 * (t26 - M3R * t9) + t3 * (t25 + M3R * t6)
     out_input_by_q[1] = 0.0625 * (t61 + 0.325 * t62)
     out_input_by_q[5] = 0.1 * t61
@@ -1608,7 +1773,7 @@ def _inverse_dynamics_derivatives(name: str) -> ca.Function:
     out_input_by_q[3] = t66
     out_input_by_q[7] = 0.1 * t65
     out_input_by_q[15] = -0.5 * t64
-    t67 = -2.0 * t37
+    t67 = -2.0 * t37 # link j4: derivatives
     t68 = -2.0 * t36
     t69 = t8 * t67 + t12 * t68
     t70 = t5 * (t8 * t68 - t12 * t67) + t3 * t69
@@ -1657,11 +1822,11 @@ def _forward_dynamics_derivatives(name: str) -> ca.Function:
     out  ddq_by_dq     [16]  [(rad/s^2, rad/s^2, m/s^2, rad/s^2) per (rad/s, rad/s, m/s, rad/s)]  d ddq / d dq;
                                                                                                   4 x 4,
                                                                                                   row-major
-    out  ddq_by_input  [16]  [(rad/s^2, rad/s^2, m/s^2, rad/s^2) per (A)]                         d ddq / d
+    out  ddq_by_input  [16]  [(rad/s^2, rad/s^2, m/s^2, rad/s^2) per A]                           d ddq / d
                                                                                                   input; 4 x 4,
                                                                                                   row-major
 
-    Operations: 394 (248 mul, 146 add, 0 neg), 4 div, 4 trig, 4 other.
+    Operations: 394 (248 mul, 146 add, 0 neg), 4 div, 4 trig, 4 other calls (sign, select and the like).
     """
     inputs = [ca.SX.sym("q", 4), ca.SX.sym("dq", 4), ca.SX.sym("input", 4), ca.SX.sym("parameters", 19)]
     [q, dq, input, parameters] = (ca.vertsplit(vector) for vector in inputs)
@@ -1679,62 +1844,62 @@ def _forward_dynamics_derivatives(name: str) -> ca.Function:
     t3 = ca.cos(q[3])
     MX4 = parameters[6]  # kg m
     MY4 = parameters[7]  # kg m
-    t4 = t3 * MX4 - t2 * MY4
+    t4 = t3 * MX4 - t2 * MY4 # link j4: column of the mass matrix
     t5 = ZZ4 + 0.275 * t4
     t6 = 1.0 / t1
     t7 = t5 * t6
-    t8 = 0.275 * M3R
+    t8 = 0.275 * M3R # link j3: column of the mass matrix
     ZZ2R = parameters[1]  # kg m^2
-    t9 = ZZ2R + (ZZ4 + 0.275 * (2.0 * t4 + t8))
+    t9 = ZZ2R + (ZZ4 + 0.275 * (2.0 * t4 + t8)) # link j3: inertia of it and all beyond
     IA2 = parameters[12]  # N m s^2/rad
     t10 = t9 + 2500.0 * IA2
     t11 = t10 - t5 * t7
     t12 = t11 + -1e-09 * t10
-    t13 = t3 * MY4 + t2 * MX4
+    t13 = t3 * MY4 + t2 * MX4 # link j4: column of the mass matrix
     MY2R = parameters[3]  # kg m
-    t14 = MY2R - t13
+    t14 = MY2R - t13 # link j3: inertia of it and all beyond
     t15 = ca.sin(q[1])
     MX2R = parameters[2]  # kg m
     t16 = MX2R + (t4 + t8)
     t17 = ca.cos(q[1])
-    t18 = t15 * t14 - t17 * t16
-    t19 = t5 + 0.325 * (t15 * t13 + t17 * t4)
+    t18 = t15 * t14 - t17 * t16 # link j2: column of the mass matrix
+    t19 = t5 + 0.325 * (t15 * t13 + t17 * t4) # link j4: column of the mass matrix
     t20 = 0.325 * t18 - t9 + t19 * t7
     t21 = 1.0 / t11
     t22 = t20 * t21
     t23 = t19 * t6
     ZZ1R = parameters[0]  # kg m^2
-    t24 = ZZ1R + (t9 + 0.325 * (0.325 * M3R + -2.0 * t18))
+    t24 = ZZ1R + (t9 + 0.325 * (0.325 * M3R + -2.0 * t18)) # link j2: inertia of it and all beyond
     t25 = t24 - t19 * t23 - t20 * t22
     t26 = t25 + -1e-09 * t24
-    t27 = dq[0] + dq[1]
+    t27 = dq[0] + dq[1] # link j2: motion
     t28 = t27 * t27
-    t29 = 0.275 * t28
-    t30 = -0.325 * (dq[0] * dq[0])
+    t29 = 0.275 * t28 # link j3: motion
+    t30 = -0.325 * (dq[0] * dq[0]) # link j2: motion
     t31 = t17 * t30
-    t32 = t29 - t31
-    t33 = t15 * t30
-    t34 = MX4 * (t2 * t32 + t3 * t33) + MY4 * (t3 * t32 - t2 * t33)
-    t35 = dq[3] - t27
+    t32 = t29 - t31 # link j3: motion
+    t33 = t15 * t30 # link j2: motion
+    t34 = MX4 * (t2 * t32 + t3 * t33) + MY4 * (t3 * t32 - t2 * t33) # link j4: force and moment
+    t35 = dq[3] - t27 # link j4: motion
     t36 = t35 * t35
-    t37 = MX4 * t36
+    t37 = MX4 * t36 # link j4: force and moment
     t38 = MY4 * t36
-    t39 = M3R * t33 - (t2 * t37 + t3 * t38)
-    t40 = MX2R * t33 + MY2R * t31 + (t34 + 0.275 * t39)
-    t41 = MX2R * t28
-    t42 = t41 + (M3R * t32 + (t3 * t37 - t2 * t38))
-    t43 = MY2R * t28
-    t44 = t40 + 0.325 * (t15 * t42 + t17 * (t43 + t39))
-    t45 = ca.sign(dq[0])
+    t39 = M3R * t33 - (t2 * t37 + t3 * t38) # link j4: what it passes on
+    t40 = MX2R * t33 + MY2R * t31 + (t34 + 0.275 * t39) # link j3: what it passes on
+    t41 = MX2R * t28 # link j2: force and moment
+    t42 = t41 + (M3R * t32 + (t3 * t37 - t2 * t38)) # link j3: what it passes on
+    t43 = MY2R * t28 # link j2: force and moment
+    t44 = t40 + 0.325 * (t15 * t42 + t17 * (t43 + t39)) # link j2: what it passes on
+    t45 = ca.sign(dq[0]) # joint j1: coulomb_friction
     FV1 = parameters[8]  # N m s/rad
     FC1 = parameters[9]  # N m
     t46 = 80.0 * (FV1 * (-80.0 * dq[0]) - FC1 * t45) + t44
-    t47 = ca.sign(dq[3])
+    t47 = ca.sign(dq[3]) # joint j4: coulomb_friction
     FV4 = parameters[16]  # N m s/rad
     FC4 = parameters[17]  # N m
     t48 = 20.0 * (FV4 * (-20.0 * dq[3]) - FC4 * t47) - t34
     t49 = 2.0 * input[3] + t48
-    t50 = ca.sign(dq[1])
+    t50 = ca.sign(dq[1]) # joint j2: coulomb_friction
     FV2 = parameters[10]  # N m s/rad
     FC2 = parameters[11]  # N m
     t51 = 50.0 * (FV2 * (50.0 * dq[1]) + FC2 * t50) - t40
@@ -1745,7 +1910,7 @@ def _forward_dynamics_derivatives(name: str) -> ca.Function:
     out_ddq[0] = t55
     t56 = t52 * t21 + t22 * t55
     out_ddq[1] = t56
-    t57 = ca.sign(dq[2])
+    t57 = ca.sign(dq[2]) # joint j3: coulomb_friction
     FV3 = parameters[13]  # N m s/rad
     FC3 = parameters[14]  # N m
     t58 = 314.1592653589793 * (FV3 * (-314.1592653589793 * dq[2]) - FC3 * t57) + 9.81 * M3R
@@ -1756,23 +1921,23 @@ def _forward_dynamics_derivatives(name: str) -> ca.Function:
     t61 = 16.0 * t54
     t62 = MY4 * t35
     t63 = MX4 * t35
-    t64 = t3 * t62 + t2 * t63
-    t65 = MY2R * t27 + t64
-    t66 = 0.275 * t27
-    t67 = MX2R * t27 + (t2 * t62 - t3 * t63 + M3R * t66)
-    t68 = t17 * t14 + t15 * t16
-    t69 = 0.325 * (t17 * t65 + t15 * t67) + t68 * (-0.325 * dq[0])
-    t70 = dq[2] * (q[2] * M3R)
+    t64 = t3 * t62 + t2 * t63 # link j4: inertia, momentum beyond
+    t65 = MY2R * t27 + t64 # link j3: inertia, momentum beyond
+    t66 = 0.275 * t27 # link j3: velocity of its origin
+    t67 = MX2R * t27 + (t2 * t62 - t3 * t63 + M3R * t66) # link j3: inertia, momentum beyond
+    t68 = t17 * t14 + t15 * t16 # link j2: column of the mass matrix
+    t69 = 0.325 * (t17 * t65 + t15 * t67) + t68 * (-0.325 * dq[0]) # link j2: inertia, momentum beyond
+    t70 = dq[2] * (q[2] * M3R) # link j3: inertia, momentum beyond
     t71 = t70 + (0.275 * t64 + (t13 * t66 - t70))
     t72 = -400.0 * FV1 + 0.125 * (t71 + t69)
     t73 = t22 * t54
     t74 = 10.0 * t73
-    t75 = 2.0 * t71
+    t75 = 2.0 * t71 # link j2: derivatives
     t76 = -0.65 * dq[0]
     t77 = 0.1 * (t75 + t68 * t76)
     t78 = t54 * (t23 + t7 * t22)
     t79 = 2.0 * t78
-    t80 = t13 * (-0.55 * t27)
+    t80 = t13 * (-0.55 * t27) # link j4: derivatives
     t81 = 0.5 * (t80 - (t15 * t4 - t17 * t13) * t76)
     out_ddq_by_dq[0] = t72 * t61 + t77 * t74 + t81 * t79
     t82 = 16.0 * t73
@@ -1807,7 +1972,7 @@ def _forward_dynamics_derivatives(name: str) -> ca.Function:
     out_ddq_by_q[1] = t61 * t103 + t74 * t104 + t79 * t105
     out_ddq_by_q[5] = t82 * t103 + t83 * t104 + t85 * t105
     out_ddq_by_q[13] = t86 * t103 + t87 * t104 + t88 * t105
-    t106 = 0.325 * (t15 * (2.0 * t67) + t17 * (2.0 * t65))
+    t106 = 0.325 * (t15 * (2.0 * t67) + t17 * (2.0 * t65)) # link j2: derivatives
     t107 = 0.0625 * (t75 + t106)
     t108 = -250.0 * FV2 + 0.2 * t71
     t109 = 0.5 * t80
@@ -1828,7 +1993,7 @@ def _forward_dynamics_derivatives(name: str) -> ca.Function:
     out_ddq_by_q[3] = t61 * t113 + t74 * t114 + t79 * t115
     out_ddq_by_q[7] = t82 * t113 + t83 * t114 + t85 * t115
     out_ddq_by_q[15] = t86 * t113 + t87 * t114 + t88 * t115
-    t116 = 2.0 * t63
+    t116 = 2.0 * t63 # link j4: derivatives
     t117 = -2.0 * t62
     t118 = t3 * t117 - t2 * t116
     t119 = t15 * (t3 * t116 + t2 * t117) + t17 * t118
@@ -1854,21 +2019,19 @@ def _inverse_dynamics_derivatives_standard(name: str) -> ca.Function:
     Inputs that give the accelerations ddq, and their derivatives; at a kink of a law, as of dry
     friction at rest, the mean of both sides; standard parameters.
 
-    in   q             [4]   [rad, rad, m, rad]                            joint coordinates; norm at most
-                                                                           10000
-    in   dq            [4]   [rad/s, rad/s, m/s, rad/s]                    joint velocities; norm at most
-                                                                           100000
-    in   ddq           [4]   [rad/s^2, rad/s^2, m/s^2, rad/s^2]            joint accelerations; norm at most
-                                                                           1e+08
-    in   parameters    [52]                                                standard parameters; norm at most
-                                                                           1e+09
-    out  input         [4]   [A]                                           inputs: motor currents, efforts
-                                                                           where undriven
-    out  input_by_q    [16]  [(A) per (rad, rad, m, rad)]                  d input / d q; 4 x 4, row-major
-    out  input_by_dq   [16]  [(A) per (rad/s, rad/s, m/s, rad/s)]          d input / d dq; 4 x 4, row-major
-    out  input_by_ddq  [16]  [(A) per (rad/s^2, rad/s^2, m/s^2, rad/s^2)]  d input / d ddq; 4 x 4, row-major
+    in   q             [4]   [rad, rad, m, rad]                          joint coordinates; norm at most 10000
+    in   dq            [4]   [rad/s, rad/s, m/s, rad/s]                  joint velocities; norm at most 100000
+    in   ddq           [4]   [rad/s^2, rad/s^2, m/s^2, rad/s^2]          joint accelerations; norm at most
+                                                                         1e+08
+    in   parameters    [52]                                              standard parameters; norm at most
+                                                                         1e+09
+    out  input         [4]   [A]                                         inputs: motor currents, efforts where
+                                                                         undriven
+    out  input_by_q    [16]  [A per (rad, rad, m, rad)]                  d input / d q; 4 x 4, row-major
+    out  input_by_dq   [16]  [A per (rad/s, rad/s, m/s, rad/s)]          d input / d dq; 4 x 4, row-major
+    out  input_by_ddq  [16]  [A per (rad/s^2, rad/s^2, m/s^2, rad/s^2)]  d input / d ddq; 4 x 4, row-major
 
-    Operations: 313 (195 mul, 118 add, 0 neg), 4 trig, 4 other.
+    Operations: 313 (195 mul, 118 add, 0 neg), 4 trig, 4 other calls (sign, select and the like).
     """
     inputs = [ca.SX.sym("q", 4), ca.SX.sym("dq", 4), ca.SX.sym("ddq", 4), ca.SX.sym("parameters", 52)]
     [q, dq, ddq, parameters] = (ca.vertsplit(vector) for vector in inputs)
@@ -1876,70 +2039,70 @@ def _inverse_dynamics_derivatives_standard(name: str) -> ca.Function:
     out_input_by_q = [ca.SX(0)] * 16
     out_input_by_dq = [ca.SX(0)] * 16
     out_input_by_ddq = [ca.SX(0)] * 16
-    t0 = 0.325 * (dq[0] * dq[0])
+    t0 = 0.325 * (dq[0] * dq[0]) # link j2: motion
     t1 = ca.cos(q[1])
     t2 = -0.325 * ddq[0]
     t3 = ca.sin(q[1])
     t4 = t1 * t0 + t3 * t2
     t5 = dq[0] + dq[1]
     t6 = t5 * t5
-    t7 = -0.275 * t6 - t4
+    t7 = -0.275 * t6 - t4 # link j3: motion
     t8 = ca.sin(q[3])
-    t9 = t1 * t2 - t3 * t0
+    t9 = t1 * t2 - t3 * t0 # link j2: motion
     t10 = ddq[0] + ddq[1]
-    t11 = t9 + -0.275 * t10
+    t11 = t9 + -0.275 * t10 # link j3: motion
     t12 = ca.cos(q[3])
-    t13 = t12 * t11 - t8 * t7
+    t13 = t12 * t11 - t8 * t7 # link j4: motion
     t14 = t12 * t7 + t8 * t11
     t15 = t10 - ddq[3]
     ZZ4 = parameters[35]  # kg m^2
     MY4 = parameters[37]  # kg m
     MX4 = parameters[36]  # kg m
-    t16 = t15 * ZZ4 + (t14 * MY4 - t13 * MX4)
+    t16 = t15 * ZZ4 + (t14 * MY4 - t13 * MX4) # link j4: force and moment
     ZZ3 = parameters[25]  # kg m^2
     MY3 = parameters[27]  # kg m
     MX3 = parameters[26]  # kg m
-    t17 = t10 * ZZ3 + (t7 * MY3 - t11 * MX3) + t16
-    t18 = t5 - dq[3]
+    t17 = t10 * ZZ3 + (t7 * MY3 - t11 * MX3) + t16 # link j4: what it passes on
+    t18 = t5 - dq[3] # link j4: motion
     t19 = t18 * t18
-    t20 = t19 * MX4 - t15 * MY4
+    t20 = t19 * MX4 - t15 * MY4 # link j4: force and moment
     M4 = parameters[39]  # kg
     t21 = t14 * M4 - t20
     t22 = t19 * MY4 + t15 * MX4
     t23 = t13 * M4 - t22
     M3 = parameters[29]  # kg
-    t24 = t11 * M3 - (t6 * MY3 + t10 * MX3) + (t8 * t21 + t12 * t23)
+    t24 = t11 * M3 - (t6 * MY3 + t10 * MX3) + (t8 * t21 + t12 * t23) # link j4: what it passes on
     ZZ2 = parameters[15]  # kg m^2
     MY2 = parameters[17]  # kg m
     MX2 = parameters[16]  # kg m
-    t25 = t10 * ZZ2 + (t4 * MY2 - t9 * MX2) + (t17 + -0.275 * t24)
-    t26 = t7 * M3 + (t10 * MY3 - t6 * MX3) + (t12 * t21 - t8 * t23)
+    t25 = t10 * ZZ2 + (t4 * MY2 - t9 * MX2) + (t17 + -0.275 * t24) # link j3: what it passes on
+    t26 = t7 * M3 + (t10 * MY3 - t6 * MX3) + (t12 * t21 - t8 * t23) # link j4: what it passes on
     M2 = parameters[19]  # kg
-    t27 = t26 - (t4 * M2 + (t6 * MX2 + t10 * MY2))
+    t27 = t26 - (t4 * M2 + (t6 * MX2 + t10 * MY2)) # link j3: what it passes on
     t28 = t9 * M2 + (t6 * MY2 - t10 * MX2) + t24
     ZZ1 = parameters[5]  # kg m^2
-    t29 = ddq[0] * ZZ1 + (t25 + 0.325 * (t3 * t27 - t1 * t28))
-    t30 = ca.sign(dq[0])
+    t29 = ddq[0] * ZZ1 + (t25 + 0.325 * (t3 * t27 - t1 * t28)) # link j2: what it passes on
+    t30 = ca.sign(dq[0]) # joint j1: coulomb_friction
     FV1 = parameters[40]  # N m s/rad
     FC1 = parameters[41]  # N m
     IA1 = parameters[42]  # N m s^2/rad
     t31 = 80.0 * dq[0] * FV1 + t30 * FC1 + 80.0 * ddq[0] * IA1
     out_input[0] = 5.0 * t31 + 0.0625 * t29
-    t32 = ca.sign(dq[1])
+    t32 = ca.sign(dq[1]) # joint j2: coulomb_friction
     FV2 = parameters[43]  # N m s/rad
     FC2 = parameters[44]  # N m
     IA2 = parameters[45]  # N m s^2/rad
     t33 = 50.0 * dq[1] * FV2 + t32 * FC2 + 50.0 * ddq[1] * IA2
     out_input[1] = 5.0 * t33 + 0.1 * t25
-    t34 = ca.sign(dq[2])
+    t34 = ca.sign(dq[2]) # joint j3: coulomb_friction
     FV3 = parameters[46]  # N m s/rad
     FC3 = parameters[47]  # N m
     IA3 = parameters[48]  # N m s^2/rad
     t35 = 314.1592653589793 * dq[2] * FV3 + t34 * FC3 + 314.1592653589793 * ddq[2] * IA3
-    t36 = ddq[2] - 9.81
+    t36 = ddq[2] - 9.81 # link j3: motion
     t37 = 10.0 * t35 + 0.03183098861837907 * (t36 * M3 + t36 * M4)
     out_input[2] = t37
-    t38 = ca.sign(dq[3])
+    t38 = ca.sign(dq[3]) # joint j4: coulomb_friction
     FV4 = parameters[49]  # N m s/rad
     FC4 = parameters[50]  # N m
     IA4 = parameters[51]  # N m s^2/rad
@@ -1947,43 +2110,43 @@ def _inverse_dynamics_derivatives_standard(name: str) -> ca.Function:
     out_input[3] = 10.0 * t39 + -0.5 * t16
     t40 = t18 * MY4
     t41 = t18 * MX4
-    t42 = M3 + M4
-    t43 = -0.275 * t5
-    t44 = t8 * t40 - t12 * t41 - t5 * MX3 + t42 * t43
+    t42 = M3 + M4 # link j4: inertia of it and all beyond
+    t43 = -0.275 * t5 # link j3: velocity of its origin
+    t44 = t8 * t40 - t12 * t41 - t5 * MX3 + t42 * t43 # link j3: inertia, momentum beyond
     t45 = t44 - t5 * MX2
-    t46 = t5 * MY3 + (t12 * t40 + t8 * t41)
-    t47 = t46 - t5 * MY2
-    t48 = t12 * MY4 + t8 * MX4
-    t49 = MY3 + t48
-    t50 = t49 - MY2
-    t51 = t8 * MY4 - t12 * MX4
-    t52 = MX3 - t51
-    t53 = 0.275 * t42
-    t54 = MX2 + (t52 + t53)
-    t55 = t3 * t54 - t1 * t50
-    t56 = 0.325 * (t1 * t47 + t3 * t45) + t55 * (0.325 * dq[0])
+    t46 = t5 * MY3 + (t12 * t40 + t8 * t41) # link j4: inertia, momentum beyond
+    t47 = t46 - t5 * MY2 # link j3: inertia, momentum beyond
+    t48 = t12 * MY4 + t8 * MX4 # link j4: column of the mass matrix
+    t49 = MY3 + t48 # link j4: inertia of it and all beyond
+    t50 = t49 - MY2 # link j3: inertia of it and all beyond
+    t51 = t8 * MY4 - t12 * MX4 # link j4: column of the mass matrix
+    t52 = MX3 - t51 # link j4: inertia of it and all beyond
+    t53 = 0.275 * t42 # link j3: column of the mass matrix
+    t54 = MX2 + (t52 + t53) # link j3: inertia of it and all beyond
+    t55 = t3 * t54 - t1 * t50 # link j2: column of the mass matrix
+    t56 = 0.325 * (t1 * t47 + t3 * t45) + t55 * (0.325 * dq[0]) # link j2: inertia, momentum beyond
     MZ3 = parameters[28]  # kg m
     MZ4 = parameters[38]  # kg m
-    t57 = dq[2] * (MZ3 + MZ4 + q[2] * t42)
+    t57 = dq[2] * (MZ3 + MZ4 + q[2] * t42) # link j3: inertia, momentum beyond
     t58 = 0.275 * t46 + (t49 * t43 + t57) - t57
     out_input_by_dq[0] = 400.0 * FV1 + 0.125 * (t58 + t56)
-    t59 = 2.0 * t58
+    t59 = 2.0 * t58 # link j2: derivatives
     t60 = 0.65 * dq[0]
     out_input_by_dq[4] = 0.1 * (t59 + t55 * t60)
-    t61 = t48 * (0.55 * t5)
+    t61 = t48 * (0.55 * t5) # link j4: derivatives
     t62 = 0.5 * (t61 + (t1 * t48 + t3 * t51) * t60)
     out_input_by_dq[12] = t62
-    t63 = t3 * t50 + t1 * t54
-    t64 = M2 + t42
+    t63 = t3 * t50 + t1 * t54 # link j2: column of the mass matrix
+    t64 = M2 + t42 # link j3: inertia of it and all beyond
     t65 = ZZ2 + (ZZ3 + ZZ4 + 0.275 * (t53 + 2.0 * t52))
-    t66 = ZZ1 + (t65 + 0.325 * (0.325 * t64 + 2.0 * t63))
+    t66 = ZZ1 + (t65 + 0.325 * (0.325 * t64 + 2.0 * t63)) # link j2: inertia of it and all beyond
     out_input_by_ddq[0] = 400.0 * IA1 + 0.0625 * t66
-    t67 = t65 + 0.325 * t63
+    t67 = t65 + 0.325 * t63 # link j2: column of the mass matrix
     out_input_by_ddq[4] = 0.1 * t67
-    t68 = 0.275 * t51 - ZZ4
+    t68 = 0.275 * t51 - ZZ4 # link j4: column of the mass matrix
     t69 = t68 + 0.325 * (t1 * t51 - t3 * t48)
     out_input_by_ddq[12] = 0.5 * t69
-    t70 = t3 * (t28 - t9 * t64) + t1 * (t27 + t4 * t64)
+    t70 = t3 * (t28 - t9 * t64) + t1 * (t27 + t4 * t64) # link j2: derivatives
     t71 = t4 * t54 - t9 * t50
     out_input_by_q[1] = 0.0625 * (t71 + 0.325 * t70)
     out_input_by_q[5] = 0.1 * t71
@@ -1998,7 +2161,7 @@ def _inverse_dynamics_derivatives_standard(name: str) -> ca.Function:
     out_input_by_dq[10] = 3141.5926535897934 * FV3
     out_input_by_ddq[10] = 3141.5926535897934 * IA3 + 0.03183098861837907 * t42
     t73 = t14 * MX4 + t13 * MY4
-    t74 = t12 * t20 - t8 * t22
+    t74 = t12 * t20 - t8 * t22 # link j4: derivatives
     t75 = t73 + 0.275 * t74
     t76 = t3 * (t12 * t22 + t8 * t20) + t1 * t74
     out_input_by_q[3] = 0.0625 * (t75 + 0.325 * t76)
@@ -2053,11 +2216,11 @@ def _forward_dynamics_derivatives_standard(name: str) -> ca.Function:
     out  ddq_by_dq     [16]  [(rad/s^2, rad/s^2, m/s^2, rad/s^2) per (rad/s, rad/s, m/s, rad/s)]  d ddq / d dq;
                                                                                                   4 x 4,
                                                                                                   row-major
-    out  ddq_by_input  [16]  [(rad/s^2, rad/s^2, m/s^2, rad/s^2) per (A)]                         d ddq / d
+    out  ddq_by_input  [16]  [(rad/s^2, rad/s^2, m/s^2, rad/s^2) per A]                           d ddq / d
                                                                                                   input; 4 x 4,
                                                                                                   row-major
 
-    Operations: 445 (270 mul, 175 add, 0 neg), 4 div, 4 trig, 4 other.
+    Operations: 445 (270 mul, 175 add, 0 neg), 4 div, 4 trig, 4 other calls (sign, select and the like).
     """
     inputs = [ca.SX.sym("q", 4), ca.SX.sym("dq", 4), ca.SX.sym("input", 4), ca.SX.sym("parameters", 52)]
     [q, dq, input, parameters] = (ca.vertsplit(vector) for vector in inputs)
@@ -2067,7 +2230,7 @@ def _forward_dynamics_derivatives_standard(name: str) -> ca.Function:
     out_ddq_by_input = [ca.SX(0)] * 16
     M3 = parameters[29]  # kg
     M4 = parameters[39]  # kg
-    t0 = M3 + M4
+    t0 = M3 + M4 # link j4: inertia of it and all beyond
     IA3 = parameters[48]  # N m s^2/rad
     t1 = t0 + 98696.04401089359 * IA3
     ZZ4 = parameters[35]  # kg m^2
@@ -2077,78 +2240,78 @@ def _forward_dynamics_derivatives_standard(name: str) -> ca.Function:
     t4 = ca.cos(q[3])
     MX4 = parameters[36]  # kg m
     MY4 = parameters[37]  # kg m
-    t5 = t4 * MX4 - t3 * MY4
+    t5 = t4 * MX4 - t3 * MY4 # link j4: column of the mass matrix
     t6 = ZZ4 + 0.275 * t5
     t7 = 1.0 / t2
     t8 = t6 * t7
     MX3 = parameters[26]  # kg m
-    t9 = MX3 + t5
-    t10 = 0.275 * t0
+    t9 = MX3 + t5 # link j4: inertia of it and all beyond
+    t10 = 0.275 * t0 # link j3: column of the mass matrix
     ZZ2 = parameters[15]  # kg m^2
     ZZ3 = parameters[25]  # kg m^2
-    t11 = ZZ2 + (ZZ3 + ZZ4 + 0.275 * (t10 + 2.0 * t9))
+    t11 = ZZ2 + (ZZ3 + ZZ4 + 0.275 * (t10 + 2.0 * t9)) # link j3: inertia of it and all beyond
     IA2 = parameters[45]  # N m s^2/rad
     t12 = t11 + 2500.0 * IA2
     t13 = t12 - t6 * t8
     t14 = t13 + -1e-09 * t12
-    t15 = t4 * MY4 + t3 * MX4
+    t15 = t4 * MY4 + t3 * MX4 # link j4: column of the mass matrix
     MY3 = parameters[27]  # kg m
-    t16 = MY3 + t15
+    t16 = MY3 + t15 # link j4: inertia of it and all beyond
     MY2 = parameters[17]  # kg m
-    t17 = MY2 - t16
+    t17 = MY2 - t16 # link j3: inertia of it and all beyond
     t18 = ca.sin(q[1])
     MX2 = parameters[16]  # kg m
     t19 = MX2 + (t9 + t10)
     t20 = ca.cos(q[1])
-    t21 = t18 * t17 - t20 * t19
-    t22 = t6 + 0.325 * (t18 * t15 + t20 * t5)
+    t21 = t18 * t17 - t20 * t19 # link j2: column of the mass matrix
+    t22 = t6 + 0.325 * (t18 * t15 + t20 * t5) # link j4: column of the mass matrix
     t23 = 0.325 * t21 - t11 + t22 * t8
     t24 = 1.0 / t13
     t25 = t23 * t24
     t26 = t22 * t7
     M2 = parameters[19]  # kg
-    t27 = M2 + t0
+    t27 = M2 + t0 # link j3: inertia of it and all beyond
     ZZ1 = parameters[5]  # kg m^2
-    t28 = ZZ1 + (t11 + 0.325 * (0.325 * t27 + -2.0 * t21))
+    t28 = ZZ1 + (t11 + 0.325 * (0.325 * t27 + -2.0 * t21)) # link j2: inertia of it and all beyond
     IA1 = parameters[42]  # N m s^2/rad
     t29 = t28 + 6400.0 * IA1
     t30 = t29 - t22 * t26 - t23 * t25
     t31 = t30 + -1e-09 * t29
-    t32 = dq[0] + dq[1]
+    t32 = dq[0] + dq[1] # link j2: motion
     t33 = t32 * t32
-    t34 = 0.275 * t33
-    t35 = 0.325 * (dq[0] * dq[0])
+    t34 = 0.275 * t33 # link j3: motion
+    t35 = 0.325 * (dq[0] * dq[0]) # link j2: motion
     t36 = t20 * t35
-    t37 = t36 + t34
-    t38 = t18 * t35
-    t39 = t4 * t37 + t3 * t38
+    t37 = t36 + t34 # link j3: motion
+    t38 = t18 * t35 # link j2: motion
+    t39 = t4 * t37 + t3 * t38 # link j4: motion
     t40 = t32 - dq[3]
     t41 = t40 * t40
-    t42 = t41 * MX4
+    t42 = t41 * MX4 # link j4: force and moment
     t43 = M4 * t39 + t42
-    t44 = t3 * t37 - t4 * t38
-    t45 = t41 * MY4
+    t44 = t3 * t37 - t4 * t38 # link j4: motion
+    t45 = t41 * MY4 # link j4: force and moment
     t46 = M4 * t44 - t45
-    t47 = t33 * MX3
-    t48 = M3 * t37 + t47 + (t4 * t43 + t3 * t46)
-    t49 = t33 * MX2
-    t50 = t33 * MY3
-    t51 = t4 * t46 - t3 * t43 - (t38 * M3 + t50)
-    t52 = t33 * MY2
-    t53 = t18 * (t36 * M2 + t49 + t48) + t20 * (t52 - t38 * M2 + t51)
-    t54 = MX4 * t44 + MY4 * t39
-    t55 = MY3 * t37 - t38 * MX3 + t54 + 0.275 * t51
+    t47 = t33 * MX3 # link j3: force and moment
+    t48 = M3 * t37 + t47 + (t4 * t43 + t3 * t46) # link j4: what it passes on
+    t49 = t33 * MX2 # link j2: force and moment
+    t50 = t33 * MY3 # link j3: force and moment
+    t51 = t4 * t46 - t3 * t43 - (t38 * M3 + t50) # link j4: what it passes on
+    t52 = t33 * MY2 # link j2: force and moment
+    t53 = t18 * (t36 * M2 + t49 + t48) + t20 * (t52 - t38 * M2 + t51) # link j2: what it passes on
+    t54 = MX4 * t44 + MY4 * t39 # link j4: force and moment
+    t55 = MY3 * t37 - t38 * MX3 + t54 + 0.275 * t51 # link j3: what it passes on
     t56 = t55 - (t38 * MX2 + t36 * MY2)
-    t57 = ca.sign(dq[0])
+    t57 = ca.sign(dq[0]) # joint j1: coulomb_friction
     FV1 = parameters[40]  # N m s/rad
     FC1 = parameters[41]  # N m
     t58 = 80.0 * (-80.0 * dq[0] * FV1 - t57 * FC1) + (t56 + 0.325 * t53)
-    t59 = ca.sign(dq[3])
+    t59 = ca.sign(dq[3]) # joint j4: coulomb_friction
     FV4 = parameters[49]  # N m s/rad
     FC4 = parameters[50]  # N m
     t60 = 20.0 * (-20.0 * dq[3] * FV4 - t59 * FC4) - t54
     t61 = 2.0 * input[3] + t60
-    t62 = ca.sign(dq[1])
+    t62 = ca.sign(dq[1]) # joint j2: coulomb_friction
     FV2 = parameters[43]  # N m s/rad
     FC2 = parameters[44]  # N m
     t63 = 50.0 * (50.0 * dq[1] * FV2 + t62 * FC2) - t56
@@ -2159,7 +2322,7 @@ def _forward_dynamics_derivatives_standard(name: str) -> ca.Function:
     out_ddq[0] = t67
     t68 = t64 * t24 + t25 * t67
     out_ddq[1] = t68
-    t69 = ca.sign(dq[2])
+    t69 = ca.sign(dq[2]) # joint j3: coulomb_friction
     FV3 = parameters[46]  # N m s/rad
     FC3 = parameters[47]  # N m
     t70 = 314.1592653589793 * (-314.1592653589793 * dq[2] * FV3 - t69 * FC3) + (9.81 * M3 + 9.81 * M4)
@@ -2170,26 +2333,26 @@ def _forward_dynamics_derivatives_standard(name: str) -> ca.Function:
     t73 = 16.0 * t66
     t74 = t40 * MY4
     t75 = t40 * MX4
-    t76 = 0.275 * t32
-    t77 = t32 * MX3 + (t4 * t75 - t3 * t74) + t0 * t76
+    t76 = 0.275 * t32 # link j3: velocity of its origin
+    t77 = t32 * MX3 + (t4 * t75 - t3 * t74) + t0 * t76 # link j3: inertia, momentum beyond
     t78 = t32 * MX2 + t77
-    t79 = t32 * MY3 + (t4 * t74 + t3 * t75)
-    t80 = t32 * MY2 - t79
-    t81 = t20 * t17 + t18 * t19
-    t82 = 0.325 * (t20 * t80 + t18 * t78) + t81 * (-0.325 * dq[0])
+    t79 = t32 * MY3 + (t4 * t74 + t3 * t75) # link j4: inertia, momentum beyond
+    t80 = t32 * MY2 - t79 # link j3: inertia, momentum beyond
+    t81 = t20 * t17 + t18 * t19 # link j2: column of the mass matrix
+    t82 = 0.325 * (t20 * t80 + t18 * t78) + t81 * (-0.325 * dq[0]) # link j2: inertia, momentum beyond
     MZ3 = parameters[28]  # kg m
     MZ4 = parameters[38]  # kg m
-    t83 = dq[2] * (MZ3 + MZ4 + q[2] * t0)
+    t83 = dq[2] * (MZ3 + MZ4 + q[2] * t0) # link j3: inertia, momentum beyond
     t84 = t83 + (-0.275 * t79 + (t16 * t76 - t83))
     t85 = -400.0 * FV1 + 0.125 * (t84 + t82)
     t86 = t25 * t66
     t87 = 10.0 * t86
-    t88 = 2.0 * t84
+    t88 = 2.0 * t84 # link j2: derivatives
     t89 = -0.65 * dq[0]
     t90 = 0.1 * (t88 + t81 * t89)
     t91 = t66 * (t26 + t8 * t25)
     t92 = 2.0 * t91
-    t93 = t15 * (-0.55 * t32)
+    t93 = t15 * (-0.55 * t32) # link j4: derivatives
     t94 = 0.5 * (t93 - (t18 * t5 - t20 * t15) * t89)
     out_ddq_by_dq[0] = t85 * t73 + t90 * t87 + t94 * t92
     t95 = 16.0 * t86
@@ -2228,7 +2391,7 @@ def _forward_dynamics_derivatives_standard(name: str) -> ca.Function:
     out_ddq_by_q[1] = t73 * t120 + t87 * t121 + t92 * t122
     out_ddq_by_q[5] = t95 * t120 + t96 * t121 + t98 * t122
     out_ddq_by_q[13] = t99 * t120 + t100 * t121 + t101 * t122
-    t123 = 0.325 * (t18 * (2.0 * t78) + t20 * (2.0 * t80))
+    t123 = 0.325 * (t18 * (2.0 * t78) + t20 * (2.0 * t80)) # link j2: derivatives
     t124 = 0.0625 * (t88 + t123)
     t125 = -250.0 * FV2 + 0.2 * t84
     t126 = 0.5 * t93
@@ -2251,7 +2414,7 @@ def _forward_dynamics_derivatives_standard(name: str) -> ca.Function:
     out_ddq_by_q[3] = t73 * t132 + t87 * t133 + t92 * t134
     out_ddq_by_q[7] = t95 * t132 + t96 * t133 + t98 * t134
     out_ddq_by_q[15] = t99 * t132 + t100 * t133 + t101 * t134
-    t135 = -2.0 * t75
+    t135 = -2.0 * t75 # link j4: derivatives
     t136 = 2.0 * t74
     t137 = t4 * t136 - t3 * t135
     t138 = t18 * (t4 * t135 + t3 * t136) + t20 * t137
@@ -2271,6 +2434,205 @@ def _forward_dynamics_derivatives_standard(name: str) -> ca.Function:
     return ca.Function(name, inputs, outputs, names_in, names_out, {})
 
 
+def _momentum_observer_step(name: str) -> ca.Function:
+    """momentum_observer_step(q, dq, input, dt, gain, parameters, state) -> state_next, external
+
+    External efforts at the joints by the generalised momentum, with a delay of 1 / gain; state: zero at
+    first, then what the step before gave; base parameters.
+
+    in   q           [4]   [rad, rad, m, rad]                      joint coordinates; norm at most 10000
+    in   dq          [4]   [rad/s, rad/s, m/s, rad/s]              joint velocities; norm at most 100000
+    in   input       [4]   [A]                                     inputs: motor currents, efforts where
+                                                                   undriven; norm at most 1e+09
+    in   dt          [1]   [s]                                     time step; norm at most 10000
+    in   gain        [4]   [1/s]                                   gains of the observer, gain dt below 1; norm
+                                                                   at most 100000
+    in   parameters  [19]                                          base parameters; norm at most 1e+09
+    in   state       [4]   [kg m^2/s, kg m^2/s, kg m/s, kg m^2/s]  state of the observer: the momentum that the
+                                                                   model expects; norm at most 1e+09
+    out  state_next  [4]   [kg m^2/s, kg m^2/s, kg m/s, kg m^2/s]  state after the step
+    out  external    [4]   [N m, N m, N, N m]                      efforts that act on the arm from outside
+
+    Operations: 129 (73 mul, 52 add, 4 neg), 4 trig, 4 other calls (sign, select and the like).
+    """
+    inputs = [ca.SX.sym("q", 4), ca.SX.sym("dq", 4), ca.SX.sym("input", 4), ca.SX.sym("dt", 1),
+        ca.SX.sym("gain", 4), ca.SX.sym("parameters", 19), ca.SX.sym("state", 4)]
+    [q, dq, input, dt, gain, parameters, state] = (ca.vertsplit(vector) for vector in inputs)
+    out_state_next = [ca.SX(0)] * 4
+    out_external = [ca.SX(0)] * 4
+    t0 = dt[0] * gain[0] - 1.0
+    t1 = dt[0] * gain[1] - 1.0
+    t2 = dt[0] * gain[2] - 1.0
+    t3 = dt[0] * gain[3] - 1.0
+    t4 = 0.325 * dq[0] # link j2: velocity of its origin
+    t5 = ca.cos(q[1])
+    t6 = t5 * t4
+    t7 = dq[0] + dq[1] # link j2: motion
+    t8 = t6 + 0.275 * t7 # link j3: velocity of its origin
+    t9 = ca.cos(q[3])
+    t10 = ca.sin(q[1])
+    t11 = t10 * t4 # link j2: velocity of its origin
+    t12 = ca.sin(q[3])
+    t13 = t12 * t11 + t9 * t8 # link j4: velocity of its origin
+    t14 = t12 * t8 - t9 * t11
+    t15 = dq[3] - t7 # link j4: motion
+    ZZ4 = parameters[5]  # kg m^2
+    MX4 = parameters[6]  # kg m
+    MY4 = parameters[7]  # kg m
+    t16 = ZZ4 * t15 - (MX4 * t13 - MY4 * t14) # link j4: momentum
+    t17 = MY4 * t15
+    t18 = MX4 * t15
+    M3R = parameters[4]  # kg
+    t19 = t12 * t17 - t9 * t18 + M3R * t8 # link j4: momentum of it and all beyond
+    ZZ2R = parameters[1]  # kg m^2
+    MX2R = parameters[2]  # kg m
+    MY2R = parameters[3]  # kg m
+    t20 = ZZ2R * t7 + (MX2R * t6 - MY2R * t11) + (0.275 * t19 - t16) # link j3: momentum of it and all beyond
+    t21 = MX2R * t7 + t19
+    t22 = M3R * t11 - (t9 * t17 + t12 * t18) - MY2R * t7
+    ZZ1R = parameters[0]  # kg m^2
+    t23 = ZZ1R * dq[0] + (t20 + 0.325 * (t10 * t22 + t5 * t21)) # link j2: momentum of it and all beyond
+    t24 = gain[0] * (t23 - state[0])
+    t25 = ca.sign(dq[0]) # joint j1: coulomb_friction
+    FV1 = parameters[8]  # N m s/rad
+    FC1 = parameters[9]  # N m
+    t26 = 80.0 * (FV1 * (-80.0 * dq[0]) - FC1 * t25) + 16.0 * input[0]
+    out_state_next[0] = state[0] + dt[0] * (t26 + t24)
+    IA2 = parameters[12]  # N m s^2/rad
+    t27 = gain[1] * (dq[1] * (2500.0 * IA2) + t20 - state[1])
+    t28 = ca.sign(dq[1]) # joint j2: coulomb_friction
+    FV2 = parameters[10]  # N m s/rad
+    FC2 = parameters[11]  # N m
+    t29 = 50.0 * (FV2 * (-50.0 * dq[1]) - FC2 * t28) + (10.0 * input[1] + (t6 * t22 - t11 * t21))
+    out_state_next[1] = state[1] + dt[0] * (t29 + t27)
+    t30 = ca.sign(dq[2]) # joint j3: coulomb_friction
+    FV3 = parameters[13]  # N m s/rad
+    FC3 = parameters[14]  # N m
+    t31 = 314.1592653589793 * (FV3 * (-314.1592653589793 * dq[2]) - FC3 * t30) + 9.81 * M3R
+    IA3 = parameters[15]  # N m s^2/rad
+    t32 = gain[2] * (M3R * dq[2] + dq[2] * (98696.04401089359 * IA3) - state[2])
+    out_state_next[2] = state[2] + dt[0] * (31.415926535897935 * input[2] + t31 + t32)
+    t33 = ca.sign(dq[3]) # joint j4: coulomb_friction
+    FV4 = parameters[16]  # N m s/rad
+    FC4 = parameters[17]  # N m
+    t34 = 20.0 * (FV4 * (-20.0 * dq[3]) - FC4 * t33) + (2.0 * input[3] + (t13 * t17 + t14 * t18))
+    IA4 = parameters[18]  # N m s^2/rad
+    t35 = gain[3] * (dq[3] * (400.0 * IA4) + t16 - state[3])
+    out_state_next[3] = state[3] + dt[0] * (t34 + t35)
+    out_external[0] = t24
+    out_external[1] = t27
+    out_external[2] = t32
+    out_external[3] = t35
+    outputs = [_vector(out_state_next), _vector(out_external)]
+    names_in = ["q", "dq", "input", "dt", "gain", "parameters", "state"]
+    names_out = ["state_next", "external"]
+    return ca.Function(name, inputs, outputs, names_in, names_out, {})
+
+
+def _momentum_observer_step_standard(name: str) -> ca.Function:
+    """momentum_observer_step_standard(q, dq, input, dt, gain, parameters, state) -> state_next, external
+
+    External efforts at the joints by the generalised momentum, with a delay of 1 / gain; state: zero at
+    first, then what the step before gave; standard parameters.
+
+    in   q           [4]   [rad, rad, m, rad]                      joint coordinates; norm at most 10000
+    in   dq          [4]   [rad/s, rad/s, m/s, rad/s]              joint velocities; norm at most 100000
+    in   input       [4]   [A]                                     inputs: motor currents, efforts where
+                                                                   undriven; norm at most 1e+09
+    in   dt          [1]   [s]                                     time step; norm at most 10000
+    in   gain        [4]   [1/s]                                   gains of the observer, gain dt below 1; norm
+                                                                   at most 100000
+    in   parameters  [52]                                          standard parameters; norm at most 1e+09
+    in   state       [4]   [kg m^2/s, kg m^2/s, kg m/s, kg m^2/s]  state of the observer: the momentum that the
+                                                                   model expects; norm at most 1e+09
+    out  state_next  [4]   [kg m^2/s, kg m^2/s, kg m/s, kg m^2/s]  state after the step
+    out  external    [4]   [N m, N m, N, N m]                      efforts that act on the arm from outside
+
+    Operations: 154 (86 mul, 64 add, 4 neg), 4 trig, 4 other calls (sign, select and the like).
+    """
+    inputs = [ca.SX.sym("q", 4), ca.SX.sym("dq", 4), ca.SX.sym("input", 4), ca.SX.sym("dt", 1),
+        ca.SX.sym("gain", 4), ca.SX.sym("parameters", 52), ca.SX.sym("state", 4)]
+    [q, dq, input, dt, gain, parameters, state] = (ca.vertsplit(vector) for vector in inputs)
+    out_state_next = [ca.SX(0)] * 4
+    out_external = [ca.SX(0)] * 4
+    t0 = dt[0] * gain[0] - 1.0
+    t1 = dt[0] * gain[1] - 1.0
+    t2 = dt[0] * gain[2] - 1.0
+    t3 = dt[0] * gain[3] - 1.0
+    t4 = 0.325 * dq[0] # link j2: velocity of its origin
+    t5 = ca.cos(q[1])
+    t6 = t5 * t4
+    t7 = dq[0] + dq[1] # link j2: motion
+    t8 = t6 + 0.275 * t7 # link j3: velocity of its origin
+    t9 = ca.cos(q[3])
+    t10 = ca.sin(q[1])
+    t11 = t10 * t4 # link j2: velocity of its origin
+    t12 = ca.sin(q[3])
+    t13 = t12 * t11 + t9 * t8 # link j4: velocity of its origin
+    t14 = t12 * t8 - t9 * t11
+    t15 = dq[3] - t7 # link j4: motion
+    ZZ4 = parameters[35]  # kg m^2
+    MX4 = parameters[36]  # kg m
+    MY4 = parameters[37]  # kg m
+    t16 = t15 * ZZ4 - (MX4 * t13 - MY4 * t14) # link j4: momentum
+    ZZ3 = parameters[25]  # kg m^2
+    MX3 = parameters[26]  # kg m
+    MY3 = parameters[27]  # kg m
+    t17 = t7 * ZZ3 + (MX3 * t8 + MY3 * t11) - t16 # link j4: momentum of it and all beyond
+    M4 = parameters[39]  # kg
+    t18 = t15 * MY4 + M4 * t14 # link j4: momentum
+    t19 = M4 * t13 - t15 * MX4
+    M3 = parameters[29]  # kg
+    t20 = t7 * MX3 + M3 * t8 + (t12 * t18 + t9 * t19) # link j4: momentum of it and all beyond
+    ZZ2 = parameters[15]  # kg m^2
+    MX2 = parameters[16]  # kg m
+    MY2 = parameters[17]  # kg m
+    t21 = t7 * ZZ2 + (MX2 * t6 - MY2 * t11) + (t17 + 0.275 * t20) # link j3: momentum of it and all beyond
+    t22 = t7 * MY3 + M3 * t11 + (t12 * t19 - t9 * t18) # link j4: momentum of it and all beyond
+    M2 = parameters[19]  # kg
+    t23 = M2 * t11 - t7 * MY2 + t22 # link j3: momentum of it and all beyond
+    t24 = t7 * MX2 + M2 * t6 + t20
+    ZZ1 = parameters[5]  # kg m^2
+    t25 = dq[0] * ZZ1 + (t21 + 0.325 * (t10 * t23 + t5 * t24)) # link j2: momentum of it and all beyond
+    IA1 = parameters[42]  # N m s^2/rad
+    t26 = gain[0] * (dq[0] * (6400.0 * IA1) + t25 - state[0])
+    t27 = ca.sign(dq[0]) # joint j1: coulomb_friction
+    FV1 = parameters[40]  # N m s/rad
+    FC1 = parameters[41]  # N m
+    t28 = 80.0 * (-80.0 * dq[0] * FV1 - t27 * FC1) + 16.0 * input[0]
+    out_state_next[0] = state[0] + dt[0] * (t28 + t26)
+    t29 = ca.sign(dq[1]) # joint j2: coulomb_friction
+    FV2 = parameters[43]  # N m s/rad
+    FC2 = parameters[44]  # N m
+    t30 = 50.0 * (-50.0 * dq[1] * FV2 - t29 * FC2) + (10.0 * input[1] + (t6 * t23 - t11 * t24))
+    IA2 = parameters[45]  # N m s^2/rad
+    t31 = gain[1] * (dq[1] * (2500.0 * IA2) + t21 - state[1])
+    out_state_next[1] = state[1] + dt[0] * (t30 + t31)
+    t32 = ca.sign(dq[2]) # joint j3: coulomb_friction
+    FV3 = parameters[46]  # N m s/rad
+    FC3 = parameters[47]  # N m
+    t33 = 314.1592653589793 * (-314.1592653589793 * dq[2] * FV3 - t32 * FC3) + (9.81 * M3 + 9.81 * M4)
+    IA3 = parameters[48]  # N m s^2/rad
+    t34 = dq[2] * (98696.04401089359 * IA3) + (dq[2] * M3 + dq[2] * M4)
+    t35 = gain[2] * (t34 - state[2])
+    out_state_next[2] = state[2] + dt[0] * (31.415926535897935 * input[2] + t33 + t35)
+    t36 = ca.sign(dq[3]) # joint j4: coulomb_friction
+    FV4 = parameters[49]  # N m s/rad
+    FC4 = parameters[50]  # N m
+    t37 = 20.0 * (-20.0 * dq[3] * FV4 - t36 * FC4) + (2.0 * input[3] + (t13 * t18 - t14 * t19))
+    IA4 = parameters[51]  # N m s^2/rad
+    t38 = gain[3] * (dq[3] * (400.0 * IA4) + t16 - state[3])
+    out_state_next[3] = state[3] + dt[0] * (t37 + t38)
+    out_external[0] = t26
+    out_external[1] = t31
+    out_external[2] = t35
+    out_external[3] = t38
+    outputs = [_vector(out_state_next), _vector(out_external)]
+    names_in = ["q", "dq", "input", "dt", "gain", "parameters", "state"]
+    names_out = ["state_next", "external"]
+    return ca.Function(name, inputs, outputs, names_in, names_out, {})
+
+
 _BUILDERS = {
     "scara_inverse_dynamics": _inverse_dynamics,
     "scara_gravity": _gravity,
@@ -2278,6 +2640,7 @@ _BUILDERS = {
     "scara_mass_matrix": _mass_matrix,
     "scara_forward_dynamics": _forward_dynamics,
     "scara_energy": _energy,
+    "scara_joint_effort": _joint_effort,
     "scara_regressor": _regressor,
     "scara_regressor_standard": _regressor_standard,
     "scara_regressor_packed": _regressor_packed,
@@ -2288,6 +2651,7 @@ _BUILDERS = {
     "scara_mass_matrix_standard": _mass_matrix_standard,
     "scara_forward_dynamics_standard": _forward_dynamics_standard,
     "scara_energy_standard": _energy_standard,
+    "scara_joint_effort_standard": _joint_effort_standard,
     "scara_forward_kinematics": _forward_kinematics,
     "scara_jacobian": _jacobian,
     "scara_motor_from_joint": _motor_from_joint,
@@ -2297,4 +2661,6 @@ _BUILDERS = {
     "scara_forward_dynamics_derivatives": _forward_dynamics_derivatives,
     "scara_inverse_dynamics_derivatives_standard": _inverse_dynamics_derivatives_standard,
     "scara_forward_dynamics_derivatives_standard": _forward_dynamics_derivatives_standard,
+    "scara_momentum_observer_step": _momentum_observer_step,
+    "scara_momentum_observer_step_standard": _momentum_observer_step_standard,
 }

@@ -83,12 +83,12 @@ def _inverse_dynamics(name: str) -> ca.Function:
     in   parameters  [3]           base parameters; norm at most 1e+09
     out  input       [1]  [A]      inputs: motor currents, efforts where undriven
 
-    Operations: 8 (6 mul, 2 add, 0 neg), 1 other.
+    Operations: 8 (6 mul, 2 add, 0 neg), 1 other calls (sign, select and the like).
     """
     inputs = [ca.SX.sym("q", 1), ca.SX.sym("dq", 1), ca.SX.sym("ddq", 1), ca.SX.sym("parameters", 3)]
     [q, dq, ddq, parameters] = (ca.vertsplit(vector) for vector in inputs)
     out = [ca.SX(0)] * 1
-    t0 = ca.sign(dq[0])
+    t0 = ca.sign(dq[0]) # joint j1: coulomb_friction
     FV1 = parameters[1]  # N m s/rad
     FC1 = parameters[2]  # N m
     M1R = parameters[0]  # kg
@@ -131,12 +131,12 @@ def _bias(name: str) -> ca.Function:
     in   parameters  [3]         base parameters; norm at most 1e+09
     out  input       [1]  [A]    inputs: motor currents, efforts where undriven
 
-    Operations: 5 (4 mul, 1 add, 0 neg), 1 other.
+    Operations: 5 (4 mul, 1 add, 0 neg), 1 other calls (sign, select and the like).
     """
     inputs = [ca.SX.sym("q", 1), ca.SX.sym("dq", 1), ca.SX.sym("parameters", 3)]
     [q, dq, parameters] = (ca.vertsplit(vector) for vector in inputs)
     out = [ca.SX(0)] * 1
-    t0 = ca.sign(dq[0])
+    t0 = ca.sign(dq[0]) # joint j1: coulomb_friction
     FV1 = parameters[1]  # N m s/rad
     FC1 = parameters[2]  # N m
     out[0] = 33.333333333333336 * (FV1 * (1256.6370614359173 * dq[0]) + FC1 * t0)
@@ -179,13 +179,13 @@ def _forward_dynamics(name: str) -> ca.Function:
     in   parameters  [3]           base parameters; norm at most 1e+09
     out  ddq         [1]  [m/s^2]  joint accelerations
 
-    Operations: 8 (6 mul, 2 add, 0 neg), 1 div, 1 other.
+    Operations: 8 (6 mul, 2 add, 0 neg), 1 div, 1 other calls (sign, select and the like).
     """
     inputs = [ca.SX.sym("q", 1), ca.SX.sym("dq", 1), ca.SX.sym("input", 1), ca.SX.sym("parameters", 3)]
     [q, dq, input, parameters] = (ca.vertsplit(vector) for vector in inputs)
     out = [ca.SX(0)] * 1
     M1R = parameters[0]  # kg
-    t0 = ca.sign(dq[0])
+    t0 = ca.sign(dq[0]) # joint j1: coulomb_friction
     FV1 = parameters[1]  # N m s/rad
     FC1 = parameters[2]  # N m
     t1 = 1256.6370614359173 * (FV1 * (-1256.6370614359173 * dq[0]) - FC1 * t0) + 37.69911184307752 * input[0]
@@ -222,6 +222,35 @@ def _energy(name: str) -> ca.Function:
     return ca.Function(name, inputs, outputs, names_in, names_out, {})
 
 
+def _joint_effort(name: str) -> ca.Function:
+    """joint_effort(q, dq, ddq, parameters) -> effort
+
+    Efforts of the drives at the joints that give the accelerations ddq in the state q, dq; base
+    parameters.
+
+    in   q           [1]  [m]      joint coordinates; norm at most 10000
+    in   dq          [1]  [m/s]    joint velocities; norm at most 100000
+    in   ddq         [1]  [m/s^2]  joint accelerations; norm at most 1e+08
+    in   parameters  [3]           base parameters; norm at most 1e+09
+    out  effort      [1]  [N]      efforts at the joints
+
+    Operations: 7 (5 mul, 2 add, 0 neg), 1 other calls (sign, select and the like).
+    """
+    inputs = [ca.SX.sym("q", 1), ca.SX.sym("dq", 1), ca.SX.sym("ddq", 1), ca.SX.sym("parameters", 3)]
+    [q, dq, ddq, parameters] = (ca.vertsplit(vector) for vector in inputs)
+    out = [ca.SX(0)] * 1
+    t0 = ca.sign(dq[0]) # joint j1: coulomb_friction
+    FV1 = parameters[1]  # N m s/rad
+    FC1 = parameters[2]  # N m
+    M1R = parameters[0]  # kg
+    t1 = 1256.6370614359173 * (FV1 * (1256.6370614359173 * dq[0]) + FC1 * t0) + M1R * ddq[0]
+    out[0] = t1
+    outputs = [_vector(out)]
+    names_in = ["q", "dq", "ddq", "parameters"]
+    names_out = ["effort"]
+    return ca.Function(name, inputs, outputs, names_in, names_out, {})
+
+
 def _regressor(name: str) -> ca.Function:
     """regressor(q, dq, ddq) -> matrix
 
@@ -236,14 +265,14 @@ def _regressor(name: str) -> ca.Function:
 
         0 M1R, 1 FV1, 2 FC1
 
-    Operations: 3 (3 mul, 0 add, 0 neg), 1 other.
+    Operations: 3 (3 mul, 0 add, 0 neg), 1 other calls (sign, select and the like).
     """
     inputs = [ca.SX.sym("q", 1), ca.SX.sym("dq", 1), ca.SX.sym("ddq", 1)]
     [q, dq, ddq] = (ca.vertsplit(vector) for vector in inputs)
     out = [ca.SX(0)] * 3
     out[0] = 0.026525823848649224 * ddq[0]
     out[1] = 41887.902047863914 * dq[0]
-    t0 = ca.sign(dq[0])
+    t0 = ca.sign(dq[0]) # joint j1: coulomb_friction
     out[2] = 33.333333333333336 * t0
     outputs = [_matrix(out, 1, 3)]
     names_in = ["q", "dq", "ddq"]
@@ -266,14 +295,14 @@ def _regressor_standard(name: str) -> ca.Function:
 
         0 XX1, 1 XY1, 2 XZ1, 3 YY1, 4 YZ1, 5 ZZ1, 6 MX1, 7 MY1, 8 MZ1, 9 M1, 10 FV1, 11 FC1, 12 IA1
 
-    Operations: 4 (4 mul, 0 add, 0 neg), 1 other.
+    Operations: 4 (4 mul, 0 add, 0 neg), 1 other calls (sign, select and the like).
     """
     inputs = [ca.SX.sym("q", 1), ca.SX.sym("dq", 1), ca.SX.sym("ddq", 1)]
     [q, dq, ddq] = (ca.vertsplit(vector) for vector in inputs)
     out = [ca.SX(0)] * 13
     out[9] = 0.026525823848649224 * ddq[0]
     out[10] = 41887.902047863914 * dq[0]
-    t0 = ca.sign(dq[0])
+    t0 = ca.sign(dq[0]) # joint j1: coulomb_friction
     out[11] = 33.333333333333336 * t0
     out[12] = 41887.902047863914 * ddq[0]
     outputs = [_matrix(out, 1, 13)]
@@ -296,14 +325,14 @@ def _regressor_packed(name: str) -> ca.Function:
 
         0 M1R, 1 FV1, 2 FC1
 
-    Operations: 3 (3 mul, 0 add, 0 neg), 1 other.
+    Operations: 3 (3 mul, 0 add, 0 neg), 1 other calls (sign, select and the like).
     """
     inputs = [ca.SX.sym("q", 1), ca.SX.sym("dq", 1), ca.SX.sym("ddq", 1)]
     [q, dq, ddq] = (ca.vertsplit(vector) for vector in inputs)
     out = [ca.SX(0)] * 3
     out[0] = 0.026525823848649224 * ddq[0]
     out[1] = 41887.902047863914 * dq[0]
-    t0 = ca.sign(dq[0])
+    t0 = ca.sign(dq[0]) # joint j1: coulomb_friction
     out[2] = 33.333333333333336 * t0
     outputs = [_vector(out)]
     names_in = ["q", "dq", "ddq"]
@@ -327,14 +356,14 @@ def _slotine_li_regressor(name: str) -> ca.Function:
 
         0 M1R, 1 FV1, 2 FC1
 
-    Operations: 3 (3 mul, 0 add, 0 neg), 1 other.
+    Operations: 3 (3 mul, 0 add, 0 neg), 1 other calls (sign, select and the like).
     """
     inputs = [ca.SX.sym("q", 1), ca.SX.sym("dq", 1), ca.SX.sym("dq_r", 1), ca.SX.sym("ddq_r", 1)]
     [q, dq, dq_r, ddq_r] = (ca.vertsplit(vector) for vector in inputs)
     out = [ca.SX(0)] * 3
     out[0] = 0.026525823848649224 * ddq_r[0]
     out[1] = 41887.902047863914 * dq[0]
-    t0 = ca.sign(dq[0])
+    t0 = ca.sign(dq[0]) # joint j1: coulomb_friction
     out[2] = 33.333333333333336 * t0
     outputs = [_matrix(out, 1, 3)]
     names_in = ["q", "dq", "dq_r", "ddq_r"]
@@ -353,12 +382,12 @@ def _inverse_dynamics_standard(name: str) -> ca.Function:
     in   parameters  [13]           standard parameters; norm at most 1e+09
     out  input       [1]   [A]      inputs: motor currents, efforts where undriven
 
-    Operations: 11 (8 mul, 3 add, 0 neg), 1 other.
+    Operations: 11 (8 mul, 3 add, 0 neg), 1 other calls (sign, select and the like).
     """
     inputs = [ca.SX.sym("q", 1), ca.SX.sym("dq", 1), ca.SX.sym("ddq", 1), ca.SX.sym("parameters", 13)]
     [q, dq, ddq, parameters] = (ca.vertsplit(vector) for vector in inputs)
     out = [ca.SX(0)] * 1
-    t0 = ca.sign(dq[0])
+    t0 = ca.sign(dq[0]) # joint j1: coulomb_friction
     FV1 = parameters[10]  # N m s/rad
     FC1 = parameters[11]  # N m
     IA1 = parameters[12]  # N m s^2/rad
@@ -401,12 +430,12 @@ def _bias_standard(name: str) -> ca.Function:
     in   parameters  [13]         standard parameters; norm at most 1e+09
     out  input       [1]   [A]    inputs: motor currents, efforts where undriven
 
-    Operations: 5 (4 mul, 1 add, 0 neg), 1 other.
+    Operations: 5 (4 mul, 1 add, 0 neg), 1 other calls (sign, select and the like).
     """
     inputs = [ca.SX.sym("q", 1), ca.SX.sym("dq", 1), ca.SX.sym("parameters", 13)]
     [q, dq, parameters] = (ca.vertsplit(vector) for vector in inputs)
     out = [ca.SX(0)] * 1
-    t0 = ca.sign(dq[0])
+    t0 = ca.sign(dq[0]) # joint j1: coulomb_friction
     FV1 = parameters[10]  # N m s/rad
     FC1 = parameters[11]  # N m
     out[0] = 33.333333333333336 * (1256.6370614359173 * dq[0] * FV1 + t0 * FC1)
@@ -450,7 +479,7 @@ def _forward_dynamics_standard(name: str) -> ca.Function:
     in   parameters  [13]           standard parameters; norm at most 1e+09
     out  ddq         [1]   [m/s^2]  joint accelerations
 
-    Operations: 10 (7 mul, 3 add, 0 neg), 1 div, 1 other.
+    Operations: 10 (7 mul, 3 add, 0 neg), 1 div, 1 other calls (sign, select and the like).
     """
     inputs = [ca.SX.sym("q", 1), ca.SX.sym("dq", 1), ca.SX.sym("input", 1), ca.SX.sym("parameters", 13)]
     [q, dq, input, parameters] = (ca.vertsplit(vector) for vector in inputs)
@@ -458,7 +487,7 @@ def _forward_dynamics_standard(name: str) -> ca.Function:
     M1 = parameters[9]  # kg
     IA1 = parameters[12]  # N m s^2/rad
     t0 = M1 + 1579136.7041742974 * IA1
-    t1 = ca.sign(dq[0])
+    t1 = ca.sign(dq[0]) # joint j1: coulomb_friction
     FV1 = parameters[10]  # N m s/rad
     FC1 = parameters[11]  # N m
     t2 = 1256.6370614359173 * (-1256.6370614359173 * dq[0] * FV1 - t1 * FC1) + 37.69911184307752 * input[0]
@@ -497,6 +526,36 @@ def _energy_standard(name: str) -> ca.Function:
     outputs = [_vector(out_kinetic), _vector(out_potential)]
     names_in = ["q", "dq", "parameters"]
     names_out = ["kinetic", "potential"]
+    return ca.Function(name, inputs, outputs, names_in, names_out, {})
+
+
+def _joint_effort_standard(name: str) -> ca.Function:
+    """joint_effort_standard(q, dq, ddq, parameters) -> effort
+
+    Efforts of the drives at the joints that give the accelerations ddq in the state q, dq; standard
+    parameters.
+
+    in   q           [1]   [m]      joint coordinates; norm at most 10000
+    in   dq          [1]   [m/s]    joint velocities; norm at most 100000
+    in   ddq         [1]   [m/s^2]  joint accelerations; norm at most 1e+08
+    in   parameters  [13]           standard parameters; norm at most 1e+09
+    out  effort      [1]   [N]      efforts at the joints
+
+    Operations: 10 (7 mul, 3 add, 0 neg), 1 other calls (sign, select and the like).
+    """
+    inputs = [ca.SX.sym("q", 1), ca.SX.sym("dq", 1), ca.SX.sym("ddq", 1), ca.SX.sym("parameters", 13)]
+    [q, dq, ddq, parameters] = (ca.vertsplit(vector) for vector in inputs)
+    out = [ca.SX(0)] * 1
+    t0 = ca.sign(dq[0]) # joint j1: coulomb_friction
+    FV1 = parameters[10]  # N m s/rad
+    FC1 = parameters[11]  # N m
+    IA1 = parameters[12]  # N m s^2/rad
+    t1 = 1256.6370614359173 * dq[0] * FV1 + t0 * FC1 + 1256.6370614359173 * ddq[0] * IA1
+    M1 = parameters[9]  # kg
+    out[0] = ddq[0] * M1 + 1256.6370614359173 * t1
+    outputs = [_vector(out)]
+    names_in = ["q", "dq", "ddq", "parameters"]
+    names_out = ["effort"]
     return ca.Function(name, inputs, outputs, names_in, names_out, {})
 
 
@@ -605,8 +664,8 @@ def _drive_gain(name: str) -> ca.Function:
 
     Joint effort per input.
 
-    in   q     [1]  [m]            joint coordinates; norm at most 10000
-    out  gain  [1]  [(N) per (A)]  drive gains K
+    in   q     [1]  [m]        joint coordinates; norm at most 10000
+    out  gain  [1]  [N per A]  drive gains K
 
     Operations: 0 (0 mul, 0 add, 0 neg).
     """
@@ -626,16 +685,16 @@ def _inverse_dynamics_derivatives(name: str) -> ca.Function:
     Inputs that give the accelerations ddq, and their derivatives; at a kink of a law, as of dry
     friction at rest, the mean of both sides; base parameters.
 
-    in   q             [1]  [m]                joint coordinates; norm at most 10000
-    in   dq            [1]  [m/s]              joint velocities; norm at most 100000
-    in   ddq           [1]  [m/s^2]            joint accelerations; norm at most 1e+08
-    in   parameters    [3]                     base parameters; norm at most 1e+09
-    out  input         [1]  [A]                inputs: motor currents, efforts where undriven
-    out  input_by_q    [1]  [(A) per (m)]      d input / d q
-    out  input_by_dq   [1]  [(A) per (m/s)]    d input / d dq
-    out  input_by_ddq  [1]  [(A) per (m/s^2)]  d input / d ddq
+    in   q             [1]  [m]              joint coordinates; norm at most 10000
+    in   dq            [1]  [m/s]            joint velocities; norm at most 100000
+    in   ddq           [1]  [m/s^2]          joint accelerations; norm at most 1e+08
+    in   parameters    [3]                   base parameters; norm at most 1e+09
+    out  input         [1]  [A]              inputs: motor currents, efforts where undriven
+    out  input_by_q    [1]  [A per m]        d input / d q
+    out  input_by_dq   [1]  [A per (m/s)]    d input / d dq
+    out  input_by_ddq  [1]  [A per (m/s^2)]  d input / d ddq
 
-    Operations: 10 (8 mul, 2 add, 0 neg), 1 other.
+    Operations: 10 (8 mul, 2 add, 0 neg), 1 other calls (sign, select and the like).
     """
     inputs = [ca.SX.sym("q", 1), ca.SX.sym("dq", 1), ca.SX.sym("ddq", 1), ca.SX.sym("parameters", 3)]
     [q, dq, ddq, parameters] = (ca.vertsplit(vector) for vector in inputs)
@@ -643,7 +702,7 @@ def _inverse_dynamics_derivatives(name: str) -> ca.Function:
     out_input_by_q = [ca.SX(0)] * 1
     out_input_by_dq = [ca.SX(0)] * 1
     out_input_by_ddq = [ca.SX(0)] * 1
-    t0 = ca.sign(dq[0])
+    t0 = ca.sign(dq[0]) # joint j1: coulomb_friction
     FV1 = parameters[1]  # N m s/rad
     FC1 = parameters[2]  # N m
     M1R = parameters[0]  # kg
@@ -671,11 +730,11 @@ def _forward_dynamics_derivatives(name: str) -> ca.Function:
                                                  1e+09
     in   parameters    [3]                       base parameters; norm at most 1e+09
     out  ddq           [1]  [m/s^2]              joint accelerations
-    out  ddq_by_q      [1]  [(m/s^2) per (m)]    d ddq / d q
+    out  ddq_by_q      [1]  [(m/s^2) per m]      d ddq / d q
     out  ddq_by_dq     [1]  [(m/s^2) per (m/s)]  d ddq / d dq
-    out  ddq_by_input  [1]  [(m/s^2) per (A)]    d ddq / d input
+    out  ddq_by_input  [1]  [(m/s^2) per A]      d ddq / d input
 
-    Operations: 11 (9 mul, 2 add, 0 neg), 1 div, 1 other.
+    Operations: 11 (9 mul, 2 add, 0 neg), 1 div, 1 other calls (sign, select and the like).
     """
     inputs = [ca.SX.sym("q", 1), ca.SX.sym("dq", 1), ca.SX.sym("input", 1), ca.SX.sym("parameters", 3)]
     [q, dq, input, parameters] = (ca.vertsplit(vector) for vector in inputs)
@@ -684,7 +743,7 @@ def _forward_dynamics_derivatives(name: str) -> ca.Function:
     out_ddq_by_dq = [ca.SX(0)] * 1
     out_ddq_by_input = [ca.SX(0)] * 1
     M1R = parameters[0]  # kg
-    t0 = ca.sign(dq[0])
+    t0 = ca.sign(dq[0]) # joint j1: coulomb_friction
     FV1 = parameters[1]  # N m s/rad
     FC1 = parameters[2]  # N m
     t1 = 1256.6370614359173 * (FV1 * (-1256.6370614359173 * dq[0]) - FC1 * t0) + 37.69911184307752 * input[0]
@@ -705,16 +764,16 @@ def _inverse_dynamics_derivatives_standard(name: str) -> ca.Function:
     Inputs that give the accelerations ddq, and their derivatives; at a kink of a law, as of dry
     friction at rest, the mean of both sides; standard parameters.
 
-    in   q             [1]   [m]                joint coordinates; norm at most 10000
-    in   dq            [1]   [m/s]              joint velocities; norm at most 100000
-    in   ddq           [1]   [m/s^2]            joint accelerations; norm at most 1e+08
-    in   parameters    [13]                     standard parameters; norm at most 1e+09
-    out  input         [1]   [A]                inputs: motor currents, efforts where undriven
-    out  input_by_q    [1]   [(A) per (m)]      d input / d q
-    out  input_by_dq   [1]   [(A) per (m/s)]    d input / d dq
-    out  input_by_ddq  [1]   [(A) per (m/s^2)]  d input / d ddq
+    in   q             [1]   [m]              joint coordinates; norm at most 10000
+    in   dq            [1]   [m/s]            joint velocities; norm at most 100000
+    in   ddq           [1]   [m/s^2]          joint accelerations; norm at most 1e+08
+    in   parameters    [13]                   standard parameters; norm at most 1e+09
+    out  input         [1]   [A]              inputs: motor currents, efforts where undriven
+    out  input_by_q    [1]   [A per m]        d input / d q
+    out  input_by_dq   [1]   [A per (m/s)]    d input / d dq
+    out  input_by_ddq  [1]   [A per (m/s^2)]  d input / d ddq
 
-    Operations: 15 (11 mul, 4 add, 0 neg), 1 other.
+    Operations: 15 (11 mul, 4 add, 0 neg), 1 other calls (sign, select and the like).
     """
     inputs = [ca.SX.sym("q", 1), ca.SX.sym("dq", 1), ca.SX.sym("ddq", 1), ca.SX.sym("parameters", 13)]
     [q, dq, ddq, parameters] = (ca.vertsplit(vector) for vector in inputs)
@@ -722,7 +781,7 @@ def _inverse_dynamics_derivatives_standard(name: str) -> ca.Function:
     out_input_by_q = [ca.SX(0)] * 1
     out_input_by_dq = [ca.SX(0)] * 1
     out_input_by_ddq = [ca.SX(0)] * 1
-    t0 = ca.sign(dq[0])
+    t0 = ca.sign(dq[0]) # joint j1: coulomb_friction
     FV1 = parameters[10]  # N m s/rad
     FC1 = parameters[11]  # N m
     IA1 = parameters[12]  # N m s^2/rad
@@ -750,11 +809,11 @@ def _forward_dynamics_derivatives_standard(name: str) -> ca.Function:
                                                   1e+09
     in   parameters    [13]                       standard parameters; norm at most 1e+09
     out  ddq           [1]   [m/s^2]              joint accelerations
-    out  ddq_by_q      [1]   [(m/s^2) per (m)]    d ddq / d q
+    out  ddq_by_q      [1]   [(m/s^2) per m]      d ddq / d q
     out  ddq_by_dq     [1]   [(m/s^2) per (m/s)]  d ddq / d dq
-    out  ddq_by_input  [1]   [(m/s^2) per (A)]    d ddq / d input
+    out  ddq_by_input  [1]   [(m/s^2) per A]      d ddq / d input
 
-    Operations: 13 (10 mul, 3 add, 0 neg), 1 div, 1 other.
+    Operations: 13 (10 mul, 3 add, 0 neg), 1 div, 1 other calls (sign, select and the like).
     """
     inputs = [ca.SX.sym("q", 1), ca.SX.sym("dq", 1), ca.SX.sym("input", 1), ca.SX.sym("parameters", 13)]
     [q, dq, input, parameters] = (ca.vertsplit(vector) for vector in inputs)
@@ -765,7 +824,7 @@ def _forward_dynamics_derivatives_standard(name: str) -> ca.Function:
     M1 = parameters[9]  # kg
     IA1 = parameters[12]  # N m s^2/rad
     t0 = M1 + 1579136.7041742974 * IA1
-    t1 = ca.sign(dq[0])
+    t1 = ca.sign(dq[0]) # joint j1: coulomb_friction
     FV1 = parameters[10]  # N m s/rad
     FC1 = parameters[11]  # N m
     t2 = 1256.6370614359173 * (-1256.6370614359173 * dq[0] * FV1 - t1 * FC1) + 37.69911184307752 * input[0]
@@ -780,6 +839,85 @@ def _forward_dynamics_derivatives_standard(name: str) -> ca.Function:
     return ca.Function(name, inputs, outputs, names_in, names_out, {})
 
 
+def _momentum_observer_step(name: str) -> ca.Function:
+    """momentum_observer_step(q, dq, input, dt, gain, parameters, state) -> state_next, external
+
+    External efforts at the joints by the generalised momentum, with a delay of 1 / gain; state: zero at
+    first, then what the step before gave; base parameters.
+
+    in   q           [1]  [m]       joint coordinates; norm at most 10000
+    in   dq          [1]  [m/s]     joint velocities; norm at most 100000
+    in   input       [1]  [A]       inputs: motor currents, efforts where undriven; norm at most 1e+09
+    in   dt          [1]  [s]       time step; norm at most 10000
+    in   gain        [1]  [1/s]     gains of the observer, gain dt below 1; norm at most 100000
+    in   parameters  [3]            base parameters; norm at most 1e+09
+    in   state       [1]  [kg m/s]  state of the observer: the momentum that the model expects; norm at most
+                                    1e+09
+    out  state_next  [1]  [kg m/s]  state after the step
+    out  external    [1]  [N]       efforts that act on the arm from outside
+
+    Operations: 16 (9 mul, 6 add, 1 neg), 1 other calls (sign, select and the like).
+    """
+    inputs = [ca.SX.sym("q", 1), ca.SX.sym("dq", 1), ca.SX.sym("input", 1), ca.SX.sym("dt", 1),
+        ca.SX.sym("gain", 1), ca.SX.sym("parameters", 3), ca.SX.sym("state", 1)]
+    [q, dq, input, dt, gain, parameters, state] = (ca.vertsplit(vector) for vector in inputs)
+    out_state_next = [ca.SX(0)] * 1
+    out_external = [ca.SX(0)] * 1
+    t0 = dt[0] * gain[0] - 1.0
+    t1 = ca.sign(dq[0]) # joint j1: coulomb_friction
+    FV1 = parameters[1]  # N m s/rad
+    FC1 = parameters[2]  # N m
+    t2 = 1256.6370614359173 * (FV1 * (-1256.6370614359173 * dq[0]) - FC1 * t1) + 37.69911184307752 * input[0]
+    M1R = parameters[0]  # kg
+    t3 = gain[0] * (M1R * dq[0] - state[0])
+    out_state_next[0] = state[0] + dt[0] * (t2 + t3)
+    out_external[0] = t3
+    outputs = [_vector(out_state_next), _vector(out_external)]
+    names_in = ["q", "dq", "input", "dt", "gain", "parameters", "state"]
+    names_out = ["state_next", "external"]
+    return ca.Function(name, inputs, outputs, names_in, names_out, {})
+
+
+def _momentum_observer_step_standard(name: str) -> ca.Function:
+    """momentum_observer_step_standard(q, dq, input, dt, gain, parameters, state) -> state_next, external
+
+    External efforts at the joints by the generalised momentum, with a delay of 1 / gain; state: zero at
+    first, then what the step before gave; standard parameters.
+
+    in   q           [1]   [m]       joint coordinates; norm at most 10000
+    in   dq          [1]   [m/s]     joint velocities; norm at most 100000
+    in   input       [1]   [A]       inputs: motor currents, efforts where undriven; norm at most 1e+09
+    in   dt          [1]   [s]       time step; norm at most 10000
+    in   gain        [1]   [1/s]     gains of the observer, gain dt below 1; norm at most 100000
+    in   parameters  [13]            standard parameters; norm at most 1e+09
+    in   state       [1]   [kg m/s]  state of the observer: the momentum that the model expects; norm at most
+                                     1e+09
+    out  state_next  [1]   [kg m/s]  state after the step
+    out  external    [1]   [N]       efforts that act on the arm from outside
+
+    Operations: 19 (11 mul, 7 add, 1 neg), 1 other calls (sign, select and the like).
+    """
+    inputs = [ca.SX.sym("q", 1), ca.SX.sym("dq", 1), ca.SX.sym("input", 1), ca.SX.sym("dt", 1),
+        ca.SX.sym("gain", 1), ca.SX.sym("parameters", 13), ca.SX.sym("state", 1)]
+    [q, dq, input, dt, gain, parameters, state] = (ca.vertsplit(vector) for vector in inputs)
+    out_state_next = [ca.SX(0)] * 1
+    out_external = [ca.SX(0)] * 1
+    t0 = dt[0] * gain[0] - 1.0
+    t1 = ca.sign(dq[0]) # joint j1: coulomb_friction
+    FV1 = parameters[10]  # N m s/rad
+    FC1 = parameters[11]  # N m
+    t2 = 1256.6370614359173 * (-1256.6370614359173 * dq[0] * FV1 - t1 * FC1) + 37.69911184307752 * input[0]
+    IA1 = parameters[12]  # N m s^2/rad
+    M1 = parameters[9]  # kg
+    t3 = gain[0] * (dq[0] * (1579136.7041742974 * IA1) + dq[0] * M1 - state[0])
+    out_state_next[0] = state[0] + dt[0] * (t2 + t3)
+    out_external[0] = t3
+    outputs = [_vector(out_state_next), _vector(out_external)]
+    names_in = ["q", "dq", "input", "dt", "gain", "parameters", "state"]
+    names_out = ["state_next", "external"]
+    return ca.Function(name, inputs, outputs, names_in, names_out, {})
+
+
 _BUILDERS = {
     "screw_axis_inverse_dynamics": _inverse_dynamics,
     "screw_axis_gravity": _gravity,
@@ -787,6 +925,7 @@ _BUILDERS = {
     "screw_axis_mass_matrix": _mass_matrix,
     "screw_axis_forward_dynamics": _forward_dynamics,
     "screw_axis_energy": _energy,
+    "screw_axis_joint_effort": _joint_effort,
     "screw_axis_regressor": _regressor,
     "screw_axis_regressor_standard": _regressor_standard,
     "screw_axis_regressor_packed": _regressor_packed,
@@ -797,6 +936,7 @@ _BUILDERS = {
     "screw_axis_mass_matrix_standard": _mass_matrix_standard,
     "screw_axis_forward_dynamics_standard": _forward_dynamics_standard,
     "screw_axis_energy_standard": _energy_standard,
+    "screw_axis_joint_effort_standard": _joint_effort_standard,
     "screw_axis_forward_kinematics": _forward_kinematics,
     "screw_axis_jacobian": _jacobian,
     "screw_axis_motor_from_joint": _motor_from_joint,
@@ -806,4 +946,6 @@ _BUILDERS = {
     "screw_axis_forward_dynamics_derivatives": _forward_dynamics_derivatives,
     "screw_axis_inverse_dynamics_derivatives_standard": _inverse_dynamics_derivatives_standard,
     "screw_axis_forward_dynamics_derivatives_standard": _forward_dynamics_derivatives_standard,
+    "screw_axis_momentum_observer_step": _momentum_observer_step,
+    "screw_axis_momentum_observer_step_standard": _momentum_observer_step_standard,
 }

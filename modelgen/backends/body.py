@@ -23,6 +23,9 @@ class Statements(Dialect, Protocol):
     def store(self, output: str, index: int, text: str) -> str:
         """Set an element of an output."""
 
+    def remarked(self, statement: str, text: str) -> str:
+        """The statement with a remark, or without one where nobody reads it."""
+
     def guard(self, status: int, text: str) -> str:
         """Leave with `status` unless the value is positive; nothing where a language has no status."""
 
@@ -34,6 +37,7 @@ def body(
 ) -> Iterator[str]:
     """The statements in print. An element with a name gets it right before its first use."""
     loaded: set[tuple[str, int]] = set()
+    said = ""
     for statement in function.program.statements:
         for vector, index in _inputs(statement.term):
             elements = named.get(vector, ())
@@ -45,7 +49,10 @@ def body(
                     yield load
         text = expression(statement.term, dialect)
         if isinstance(statement.target, int):
-            yield dialect.let(statement.target, text)
+            let = dialect.let(statement.target, text)
+            new = statement.note and statement.note != said
+            said = statement.note or said
+            yield dialect.remarked(let, said) if new else let
         elif statement.target[0] == "guard":
             guard = dialect.guard(statement.target[1], text)
             if guard:

@@ -82,6 +82,10 @@ class _Lanes:
         """One column."""
         return f"out[{self.places[index]}] = {text};"
 
+    def remarked(self, statement: str, text: str) -> str:
+        """Without: nobody reads it."""
+        return statement
+
     def guard(self, status: int, text: str) -> str:
         """None, as in NumPy."""
         return ""

@@ -6,6 +6,7 @@ import re
 from dataclasses import dataclass
 
 from modelgen.functions.objects import Argument, Function, Model
+from modelgen.functions.steps import OF_EFFECTS, STATE
 
 # Names of parameters are short and carry the number of their joint, so they never meet those of a library.
 _NAME = re.compile(r"[A-Z]+[0-9]+[A-Za-z0-9_]*")
@@ -43,13 +44,17 @@ def elements(model: Model, function: Function, argument: Argument) -> tuple[Elem
 
     Raises ValueError where the argument has another length than what it stands for.
     """
-    if argument.name == "parameters":
+    if argument.elements:
+        found = tuple(Element(name, "", "") for name in argument.elements)
+    elif argument.length:
+        return ()
+    elif argument.name == "parameters":
         found = standard_parameters(model) if function.name.endswith("_standard") else base_parameters(model)
     elif argument.name == "geometry":
         found = tuple(
             Element(name, "", f"{model.arm.symbols[name]!r} in the description") for name in model.geometry
         )
-    elif argument.name == "state":
+    elif argument.name in (STATE, OF_EFFECTS):
         found = tuple(Element(name, "", "") for name in model.states)
     else:
         return ()

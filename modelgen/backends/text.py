@@ -44,6 +44,13 @@ def wrapped_code(text: str, indent: str, continuation: str) -> str:
     return wrapped(text, indent, continuation)
 
 
+def with_remark(statement: str, remark: str, indent: str) -> str:
+    """A statement and a remark on one line, or the remark on a line before where they do not fit."""
+    if "\n" not in statement and len(statement) + 1 + len(remark) <= WIDTH:
+        return f"{statement} {remark}"
+    return f"{indent}{remark}\n{statement}"
+
+
 def table(rows: Iterable[Sequence[str]], width: int = WIDTH - 3) -> list[str]:
     """Rows in aligned columns; the last column is wrapped below itself."""
     cells = [[cell.strip() for cell in row] for row in rows]
@@ -69,7 +76,8 @@ def operations(counts: Mapping[str, int]) -> str:
     """The counts in print: additions, multiplications and negations first, then what costs more."""
     cheap = ", ".join(f"{counts[kind]} {kind}" for kind in ("mul", "add", "neg"))
     total = sum(counts[kind] for kind in ("mul", "add", "neg"))
-    rest = [f"{counts[kind]} {kind}" for kind in ("div", "sqrt", "trig", "other") if counts.get(kind)]
+    rest = [f"{counts[kind]} {kind}" for kind in ("div", "sqrt", "trig") if counts.get(kind)]
+    rest += [f"{counts['other']} other calls (sign, select and the like)"] if counts.get("other") else []
     return f"Operations: {total} ({cheap})" + "".join(f", {part}" for part in rest) + "."
 
 

@@ -3,7 +3,17 @@
 from modelgen.description.joints import DEFAULT_EFFECTS
 from modelgen.description.json_schema import json_schema
 from modelgen.description.loading import load, loads
-from modelgen.description.objects import Arm, Combined, EffectUse, Inertial, Joint, Limits, Tool, Transform
+from modelgen.description.objects import (
+    Arm,
+    Combined,
+    EffectUse,
+    Inertial,
+    Joint,
+    Limits,
+    Tool,
+    Transform,
+    Watched,
+)
 from modelgen.description.starter import starter
 from modelgen.symbolic import Range, Scalar, geometry_symbol
 from modelgen.transmission import DirectDrive, Drive, LeveredDrive, MotorLimits, NoDrive
@@ -25,6 +35,7 @@ __all__ = [
     "Scalar",
     "Tool",
     "Transform",
+    "Watched",
     "geometry_symbol",
     "json_schema",
     "load",

@@ -10,7 +10,7 @@ from modelgen.description.inertials import read_inertial
 from modelgen.description.joints import KnownEffects, coordinate_kind, read_effects, read_joint
 from modelgen.description.messages import describe
 from modelgen.description.names import arm_name_problem, symbol_name_problem
-from modelgen.description.objects import Arm, Combined, Inertial
+from modelgen.description.objects import Arm, Combined, Inertial, Watched
 from modelgen.description.plausible import ask_gravity, ask_unit
 from modelgen.description.schema import ArmModel, Document
 from modelgen.description.transforms import read_base, read_tools
@@ -67,6 +67,7 @@ def _arm(context: Context, model: ArmModel, known_effects: KnownEffects | None) 
         base=read_base(context, model),
         tools=read_tools(context, model, names),
         combined=_combined(context, model),
+        monitor=tuple(Watched(name, context.where(["monitor", i])) for i, name in enumerate(model.monitor)),
         where=context.where([], key=True),
     )
 

@@ -27,6 +27,7 @@ __all__ = [
     "Scalar",
     "Tool",
     "Transform",
+    "Watched",
     "geometry_symbol",
 ]
 
@@ -129,6 +130,14 @@ class Combined:
 
 
 @dataclass(frozen=True)
+class Watched:
+    """A parameter that a monitor follows, by its name. `where`: its place in the file."""
+
+    name: str
+    where: Location | None = field(default=None, compare=False)
+
+
+@dataclass(frozen=True)
 class Arm:
     """One arm, as its description has it.
 
@@ -158,6 +167,8 @@ class Arm:
         Named frames on links.
     combined : tuple of Combined
         Functions that do the work of several at once.
+    monitor : tuple of Watched
+        Parameters that the function `monitor_step` follows.
     version : str
         Version of the description, "" where it has none.
     where : Location, optional
@@ -178,6 +189,7 @@ class Arm:
     base: Transform | None = field(default=None, metadata=OPTIONAL)
     tools: tuple[Tool, ...] = field(default=(), metadata=OPTIONAL)
     combined: tuple[Combined, ...] = field(default=(), metadata=OPTIONAL)
+    monitor: tuple[Watched, ...] = field(default=(), metadata=OPTIONAL)
     version: str = field(default="", metadata=OPTIONAL)
     where: Location | None = field(default=None, compare=False)
     document: str = field(default="", compare=False, repr=False)

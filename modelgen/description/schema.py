@@ -239,6 +239,11 @@ class ArmModel(Model):
         description="Functions that do the work of several in one call: name to the functions that it stands "
         "for, {tick: [inverse_dynamics, mass_matrix]}.",
     )
+    monitor: list[Annotated[str, Field(min_length=1)]] = Field(
+        default=[],
+        description="Parameters that the function monitor_step follows: [FC2, M4]; names of base or standard "
+        "parameters.",
+    )
     links: dict[str, LinkModel] = Field(
         default={}, description="Nominal inertials by the name of the link's joint."
     )

@@ -20,6 +20,11 @@ def effort_units(arm: Arm) -> str:
     return _together(["N" if arm.joints[i].type == "prismatic" else "N m" for i in arm.coordinates])
 
 
+def momentum_units(arm: Arm) -> str:
+    """kg m^2/s and kg m/s joint by joint."""
+    return _together(["kg m/s" if arm.joints[i].type == "prismatic" else "kg m^2/s" for i in arm.coordinates])
+
+
 def input_units(equations: Equations) -> str:
     """A for a driven joint, N m or N for an undriven one."""
     units = []
@@ -36,6 +41,15 @@ def motor_units(equations: Equations, per: str = "") -> str:
         joint = "m" if equations.arm.joints[i].type == "prismatic" else "rad"
         units.append((drive.transmission.unit if drive.transmission.driven else joint) + per)
     return _together(units)
+
+
+def per(over: str, under: str) -> str:
+    """A unit over another one, in words: "m per rad"; several, or one with a stroke, in brackets."""
+
+    def clear(unit: str) -> str:
+        return f"({unit})" if "," in unit or "/" in unit else unit
+
+    return f"{clear(over)} per {clear(under)}"
 
 
 def _together(units: Sequence[str]) -> str:
@@ -69,6 +83,16 @@ def arguments(equations: Equations, parameters: Sequence[tuple[str, int, str]]) 
         Argument("time", 1, "s", "time since the start of the motion", 1e6),
         Argument(
             "load", n, "force at the motor coordinate", "loads of the drives, from the function load", 1e9
+        ),
+        Argument("forgetting", 1, "1", "forgetting factor: 1 - time step / memory", 1.0),
+        Argument("gain", n, "1/s", "gains of the observer, gain dt below 1", 1e5),
+        Argument(
+            "observer_state",
+            n,
+            momentum_units(arm),
+            "state of the observer: the momentum that the model expects",
+            1e9,
+            length="N_OBSERVER_STATES",
         ),
         Argument("geometry", len(arm.symbols), "m, rad", "geometry, in the order of the list", 1e6),
     ]

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 
 import sympy as sp
@@ -25,13 +25,14 @@ class Assembly:
     """Parts that the functions of one arm share.
 
     real: equations with the frames as described. base: the same with the last links' frames at the
-    foot of the common normal, where the base parameters live.
+    foot of the common normal, where the base parameters live. more: inputs of one function alone, by name.
     """
 
     options: Options
     real: Equations
     base: Equations
     grouping: Grouping
+    more: Mapping[str, Argument] = field(default_factory=dict)
 
     @property
     def n(self) -> int:
@@ -46,7 +47,7 @@ class Assembly:
             ("parameters", count, "base parameters"),
             ("standard_parameters", len(self.real.standard), "standard parameters"),
         ]
-        return arguments(self.real, sizes)
+        return {**arguments(self.real, sizes), **self.more}
 
     def function(
         self,
@@ -59,8 +60,11 @@ class Assembly:
         guards: Sequence[tuple[Expr, int]] = (),
         order: Sequence[tuple[str, int]] | None = None,
         stacked: bool = False,
+        ranges: Sequence[InputRange] = (),
     ) -> Function:
-        """A function of the named inputs. `drives`: it makes sense within the levers' strokes only."""
+        """A function of the named inputs. `drives`: it makes sense within the levers' strokes only; `ranges`:
+        of other inputs.
+        """
         outputs = {output.name: list(expressions) for output, expressions in results}
         if drives:
             guards = [*guards, *self.stroke_guards(inputs, results)]
@@ -72,9 +76,14 @@ class Assembly:
             tuple(output for output, _ in results),
             program,
             count_operations(program),
-            self.ranges(inputs) if drives else (),
+            (*(self.ranges(inputs) if drives else ()), *ranges),
             stacked,
         )
+
+    def of_state(self, name: str, checked: bool = False) -> Output:
+        """What a state that the caller keeps (see `steps`) is after a step. checked: as of `Output`."""
+        a = self.known[name]
+        return Output("state_next", a.size, 1, a.unit, "state after the step", a.length, checked)
 
     def _arguments(self, inputs: Sequence[str], program: Program) -> list[Argument]:
         names: list[str] = []

@@ -22,6 +22,7 @@ from modelgen.functions.parametric import (
     standard_values,
 )
 from modelgen.functions.regressors import regressor_functions
+from modelgen.functions.watch import watch_functions
 from modelgen.model.equations import Equations
 
 DEFAULTS = Options()
@@ -66,6 +67,10 @@ def build_model(arm: Arm, options: Options = DEFAULTS) -> Model:
         functions += row_wise_derivatives(a, rows)
         for suffix in [suffix for suffix in given if suffix in dynamics]:
             functions += derivative_functions(a, dynamics[suffix], suffix, given[suffix])
+    if options.watch:
+        whole = {suffix: dynamics[suffix] for suffix in given if suffix in dynamics}
+        folded = {"_identified": options.identified, "_nominal": nominal}
+        functions += watch_functions(a, whole, given, folded)
     if options.combined:
         functions += combined_functions(arm, functions)
     return Model(

@@ -20,7 +20,9 @@ TAKEN = frozenset(
         "check_parameters",
         "max",
         "min",
+        "motors_onto_strokes",
         "model",
+        "onto_strokes",
         "pair_t",
         "plant",
         "private",
@@ -56,7 +58,7 @@ def combined_functions(arm: Arm, functions: Sequence[Function]) -> list[Function
 
 def _check(one: Combined, known: Mapping[str, Function]) -> None:
     plain = [name for name in known if not name.endswith(SUFFIXES)]
-    if one.name in TAKEN or one.name in known or one.name.endswith((*SUFFIXES, "_float")):
+    if one.name in TAKEN or one.name in known or one.name.endswith((*SUFFIXES, "_float", "_nearest")):
         listed = ", ".join(SUFFIXES)
         raise InputError(
             f"'{one.name}' is taken or ends in one of {listed}; choose another name",

@@ -6,7 +6,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 
 from modelgen.base_parameters import Grouping
-from modelgen.functions.arguments import input_units, joint_units
+from modelgen.functions.arguments import input_units, joint_units, per
 from modelgen.functions.assembly import Assembly, Result, vector
 from modelgen.functions.dynamics import Dynamics
 from modelgen.functions.objects import STATUS_PIVOT, Function, Output
@@ -87,8 +87,8 @@ def _results(value: Output, units: Mapping[str, str], found: Derived) -> list[Re
     """Outputs of a function: its values, then a matrix by each of the inputs in `units`."""
     results: list[Result] = [(value, found.values)]
     for (name, unit), matrix in zip(units.items(), found.by, strict=True):
-        text, per = f"d {value.name} / d {name}", f"({value.unit}) per ({unit})"
-        output = Output(f"{value.name}_by_{name}", value.rows, value.rows, per, text)
+        text = f"d {value.name} / d {name}"
+        output = Output(f"{value.name}_by_{name}", value.rows, value.rows, per(value.unit, unit), text)
         results.append((output, [x for row in matrix for x in row]))
     return results
 

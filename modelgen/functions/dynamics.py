@@ -49,6 +49,18 @@ class Dynamics:
 
         return self.cheapest(form)
 
+    def joint_efforts(self, dq: Sequence[Expr], ddq: Sequence[Expr]) -> list[Expr]:
+        """Efforts of the drives at the joints [N m or N], K times the inputs of ideal drives."""
+        e = self.equations
+        rates = Rates(dq, ddq)
+        added = EffectForces(e, rates, self.values).efforts()
+
+        def form(frames: Frames) -> list[Expr]:
+            efforts = joint_efforts(frames, link_motions(frames, rates), e.link_values(self.values))
+            return [effort + extra for effort, extra in zip(efforts, added, strict=True)]
+
+        return self.cheapest(form)
+
     def mass_matrix(self, dq: Sequence[Expr] | None = None) -> list[list[Expr]]:
         """n x n, drives included [kg m^2, kg m, kg], at the speeds `dq`, at rest by default."""
         e = self.equations

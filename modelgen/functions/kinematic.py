@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from modelgen.errors import InputError
-from modelgen.functions.arguments import effort_units, input_units, joint_units, motor_units
+from modelgen.functions.arguments import effort_units, input_units, joint_units, motor_units, per
 from modelgen.functions.assembly import Assembly, vector
 from modelgen.functions.dynamics import Dynamics
 from modelgen.functions.objects import Function, Output
@@ -104,7 +104,7 @@ def _joint_from_motor(a: Assembly) -> Function:
 
 def _drive_gain(a: Assembly) -> Function:
     e = a.real
-    unit = f"({effort_units(e.arm)}) per ({input_units(e)})"
+    unit = per(effort_units(e.arm), input_units(e))
     gains = Dynamics(e, []).gains()
     return a.function(
         "drive_gain", "Joint effort per input.", ["q"], [(vector("gain", a.n, unit, "drive gains K"), gains)]

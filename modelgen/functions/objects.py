@@ -24,24 +24,36 @@ def least_guarded(status: int) -> float:
 
 @dataclass(frozen=True)
 class Argument:
-    """An input vector. `bound` is the largest magnitude of an element that is accepted."""
+    """An input vector. `bound` is the largest magnitude of an element that is accepted.
+
+    elements: what each element is, where that differs and no other list says it. length: the size macro of
+    a vector that has one of its own. diagonal: elements that are the diagonal of a matrix, if any.
+    """
 
     name: str
     size: int
     unit: str
     text: str
     bound: float
+    elements: tuple[str, ...] = ()
+    length: str = ""
+    diagonal: tuple[int, ...] = ()
 
 
 @dataclass(frozen=True)
 class Output:
-    """An output: rows x columns, row-major where it is a flat array."""
+    """An output: rows x columns, row-major where it is a flat array.
+
+    length: as of `Argument`. checked: whether what comes out may be no number, so that it has to be tested.
+    """
 
     name: str
     rows: int
     columns: int
     unit: str
     text: str
+    length: str = ""
+    checked: bool = False
 
     @property
     def size(self) -> int:

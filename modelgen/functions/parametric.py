@@ -6,7 +6,7 @@ from collections.abc import Collection, Mapping, Sequence
 
 from modelgen.base_parameters import Grouping
 from modelgen.errors import InputError
-from modelgen.functions.arguments import input_units, joint_units
+from modelgen.functions.arguments import effort_units, input_units, joint_units
 from modelgen.functions.assembly import Assembly, vector
 from modelgen.functions.dynamics import Dynamics
 from modelgen.functions.nominal import factor_value
@@ -77,7 +77,7 @@ def drives_apart(
 def parametric_functions(
     a: Assembly, dynamics: Dynamics, suffix: str, parameters: Sequence[str]
 ) -> list[Function]:
-    """The six functions for one way of giving parameters.
+    """The functions for one way of giving parameters.
 
     suffix: "", "_standard", "_identified" or "_nominal"; parameters: names of the parameter inputs, if any.
     """
@@ -131,6 +131,17 @@ def parametric_functions(
             ],
         ),
     ]
+    if any(drive.transmission.driven for drive in e.drives):
+        efforts = vector("effort", n, effort_units(e.arm), "efforts at the joints")
+        functions.append(
+            a.function(
+                f"joint_effort{suffix}",
+                "Efforts of the drives at the joints that give the accelerations ddq in the state q, dq; "
+                f"{with_what}.",
+                ["q", "dq", "ddq", *parameters],
+                [(efforts, dynamics.joint_efforts(dq, ddq))],
+            )
+        )
     return functions + _of_effects(a, dynamics, suffix, parameters, with_what)
 
 

@@ -105,6 +105,8 @@ def shown_options(options: Options) -> dict[str, str]:
         shown["inputs"] = "sines and cosines"
     if not options.derivatives:
         shown["derivatives"] = "none"
+    if not options.watch:
+        shown["watch"] = "none"
     if options.jacobian_link is not None:
         shown["jacobian"] = options.jacobian_link
     if options.nominal:

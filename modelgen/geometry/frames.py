@@ -7,6 +7,7 @@ Vectors are turned by one plane rotation after the other: a right angle then cos
 from __future__ import annotations
 
 from collections.abc import Mapping
+from contextlib import AbstractContextManager
 from dataclasses import dataclass
 
 from modelgen.description.objects import Arm, Joint
@@ -104,6 +105,10 @@ class Frames:
         self.coordinates = arm.coordinates
         number = {i: n for n, i in enumerate(arm.coordinates)}
         self.frames = [self._frame(i, joint, number.get(i)) for i, joint in enumerate(arm.joints)]
+
+    def noted(self, index: int, text: str) -> AbstractContextManager[None]:
+        """What is made meanwhile in the graph belongs to a link, and to what the text says of it."""
+        return self.graph.noted(f"link {self.arm.joints[index].name}: {text}")
 
     def __getitem__(self, index: int) -> Frame:
         return self.frames[index]

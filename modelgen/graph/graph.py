@@ -8,7 +8,8 @@ folded and 0 and 1 disappear while nodes are made, so no pass has to clean up af
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
 from typing import TypeAlias
 
 Number: TypeAlias = int | float
@@ -92,13 +93,18 @@ class Expr:
 
 
 class Graph:
-    """The nodes of one or several functions that share their sub-expressions."""
+    """The nodes of one or several functions that share their sub-expressions.
+
+    `notes` says of each node what it is a part of, as far as that was told when it was made: see `noted`.
+    """
 
     def __init__(self) -> None:
         self.op: list[int] = []
         self.args: list[tuple[int, ...]] = []
         self.name: list[str] = []  # input: its vector's name; call: the function
         self.number: list[float] = []  # constant: magnitude; input: index
+        self.notes: list[str] = []
+        self._note = ""
         self._ids: dict[object, int] = {}
         self.zero = Expr(self, self._node((CONST, 0.0), CONST, number=0.0))
         self.one = Expr(self, self._node((CONST, 1.0), CONST, number=1.0))
@@ -117,7 +123,17 @@ class Graph:
             self.args.append(args)
             self.name.append(name)
             self.number.append(number)
+            self.notes.append(self._note)
         return 2 * found
+
+    @contextmanager
+    def noted(self, text: str) -> Iterator[None]:
+        """Nodes made meanwhile are a part of this: a link and a pass over the links, say."""
+        before, self._note = self._note, text
+        try:
+            yield
+        finally:
+            self._note = before
 
     # -- leaves ---------------------------------------------------------------------------
 

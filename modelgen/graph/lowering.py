@@ -6,7 +6,7 @@ The program is what every backend prints, so the operations that it counts are t
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any, TypeAlias
 
 from modelgen.graph.graph import ADD, CALL, CONST, DIV, EVEN, INPUT, MUL, ODD, Expr, Graph
@@ -24,11 +24,12 @@ class Statement:
     """`target` is a temporary's number, (output name, element), or ("guard", bit).
 
     `term` is the value. A guard says that the value must be positive for what follows to make sense;
-    `bit` is the status to report where it is not.
+    `bit` is the status to report where it is not. note: what it is a part of (see `Graph.noted`).
     """
 
     target: int | tuple[str, int]
     term: Term
+    note: str = field(default="", compare=False, repr=False)
 
 
 def read(term: Term) -> list[int]:
@@ -106,7 +107,7 @@ class _Lowering:
             )
             if named:
                 self.number[node] = len(self.number)
-                self.statements.append(Statement(self.number[node], term))
+                self.statements.append(Statement(self.number[node], term, self.graph.notes[node]))
                 term, size = ("let", self.number[node]), 1
             self.terms[node] = (term, size)
             if node in self.guards:

@@ -24,11 +24,13 @@ def mass_matrix(frames: Frames, parameters: Parameters) -> list[list[Expr]]:
     for i in reversed(frames.order):
         frame = frames[i]
         if frame.coordinate is not None:
-            _fill(frames, i, bodies[i], matrix)
+            with frames.noted(i, "column of the mass matrix"):
+                _fill(frames, i, bodies[i], matrix)
         if frame.antecedent is not None:
-            carried = carried_body(frame, bodies[i])
-            total = zip(bodies[frame.antecedent], carried, strict=True)
-            bodies[frame.antecedent] = tuple(a + b for a, b in total)
+            with frames.noted(i, "inertia of it and all beyond"):
+                carried = carried_body(frame, bodies[i])
+                total = zip(bodies[frame.antecedent], carried, strict=True)
+                bodies[frame.antecedent] = tuple(a + b for a, b in total)
     return matrix
 
 

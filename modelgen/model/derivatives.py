@@ -56,15 +56,17 @@ def effort_derivatives(frames: Frames, rates: Rates, parameters: Parameters) -> 
     for i in reversed(frames.order):
         frame = frames[i]
         if frame.coordinate is not None:
-            found = _of_joint(frames, i, motions, shifts, composites[i], acting)
+            with frames.noted(i, "derivatives"):
+                found = _of_joint(frames, i, motions, shifts, composites[i], acting)
             for j, (row_q, row_dq, row_ddq, column_q, column_dq) in found.items():
                 k = frame.coordinate
                 by_q[k][j], by_dq[k][j], by_ddq[k][j] = row_q, row_dq, row_ddq
                 if j != k:
                     by_q[j][k], by_dq[j][k], by_ddq[j][k] = column_q, column_dq, row_ddq
         if frame.antecedent is not None:
-            carried = _carried(frame, composites[i], shifts[i])
-            composites[frame.antecedent] = _sum(composites[frame.antecedent], carried)
+            with frames.noted(i, "inertia, momentum beyond"):
+                carried = _carried(frame, composites[i], shifts[i])
+                composites[frame.antecedent] = _sum(composites[frame.antecedent], carried)
     return EffortDerivatives(by_q, by_dq, by_ddq)
 
 

@@ -28,13 +28,15 @@ def wrenches(frames: Frames, motions: Sequence[LinkMotion], parameters: Paramete
     zero: Vector = (graph.zero, graph.zero, graph.zero)
     total: dict[int | None, Wrench] = {None: (zero, zero)}
     for i, motion in enumerate(motions):
-        total[i] = wrench(motion, parameters[i], density)
+        with frames.noted(i, "force and moment"):
+            total[i] = wrench(motion, parameters[i], density)
     for i in reversed(frames.order):
         frame = frames[i]
         if frame.antecedent is not None:
             force, moment = total[i]
             f, n = total[frame.antecedent]
-            back = frame.to_antecedent(force)
-            turned = add(frame.to_antecedent(moment), cross(frame.origin, back))
-            total[frame.antecedent] = add(f, back), add(n, turned)
+            with frames.noted(i, "what it passes on"):
+                back = frame.to_antecedent(force)
+                turned = add(frame.to_antecedent(moment), cross(frame.origin, back))
+                total[frame.antecedent] = add(f, back), add(n, turned)
     return [total[i] for i in range(len(motions))]

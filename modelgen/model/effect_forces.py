@@ -184,7 +184,8 @@ class EffectForces:
         port = {} if isinstance(x, InputVariables) else self.ports.of(effect, part).bound
         for symbol in sp.sympify(expression).free_symbols - known.keys():
             known[symbol] = port[symbol] if symbol in port else lazy[symbol]()
-        return self.ports.converted(part, expression, known)
+        with self.graph.noted(f"joint {self.e.arm.joints[part.joint].name}: {effect.effect.name}"):
+            return self.ports.converted(part, expression, known)
 
     def _states(self, effect: AppliedEffect) -> dict[sp.Symbol, Expr]:
         names = self.e.state_names()

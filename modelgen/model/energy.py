@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from modelgen.geometry import Frames
 from modelgen.graph import Expr
-from modelgen.graph.vectors import Vector, add, cross, dot
+from modelgen.graph.vectors import Vector, cross, dot
 from modelgen.model.dynamics import Parameters
-from modelgen.model.motion import Rates, link_motions, of_links
+from modelgen.model.motion import Rates, link_motions, origin_velocities
 
 
 def link_energies(frames: Frames, rates: Rates, parameters: Parameters) -> tuple[Expr, Expr]:
@@ -16,22 +16,18 @@ def link_energies(frames: Frames, rates: Rates, parameters: Parameters) -> tuple
     + density g'(V p + first moments of the volume).
     """
     graph, density = frames.graph, frames.arm.fluid_density
-    motions, moving = link_motions(frames, rates), of_links(frames, rates)
-    zero: Vector = (graph.zero, graph.zero, graph.zero)
-    velocity: dict[int | None, Vector] = {None: zero}
+    motions = link_motions(frames, rates)
+    velocities = origin_velocities(frames, rates, [motion.velocity for motion in motions])
     height: dict[int | None, Expr] = {None: graph.zero}  # g . p
     x, y, z = (frames.scalars(component) for component in frames.arm.gravity)
     gravity: dict[int | None, Vector] = {None: (x, y, z)}
-    spin: dict[int | None, Vector] = {None: zero}
     kinetic, potential = graph.zero, graph.zero
     for i in frames.order:
         frame, motion = frames[i], motions[i]
         before = frame.antecedent
-        v = frame.to_link(add(velocity[before], cross(spin[before], frame.origin)))
-        if frame.coordinate is not None and frame.prismatic:
-            v = (v[0], v[1], v[2] + moving.dq[frame.coordinate])
+        v = velocities[i]
         height[i] = height[before] + dot(gravity[before], frame.origin)
-        velocity[i], gravity[i], spin[i] = v, motion.gravity, motion.velocity
+        gravity[i] = motion.gravity
         xx, xy, xz, yy, yz, zz, mx, my, mz, m = parameters[i][:10]
         w = motion.velocity
         momentum = (

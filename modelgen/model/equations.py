@@ -118,12 +118,13 @@ class Equations:
         symbols = {**self.scalars.symbols, transmission.q: self.graph.input("q", n)}
 
         def convert(expression: sp.Expr) -> Expr:
-            return from_sympy(
-                self.graph,
-                expression,
-                symbols,
-                lambda angle: self.trigonometry.lookup(n, transmission.q, angle),
-            )
+            with self.graph.noted(f"joint {self.arm.joints[self.arm.coordinates[n]].name}: drive"):
+                return from_sympy(
+                    self.graph,
+                    expression,
+                    symbols,
+                    lambda angle: self.trigonometry.lookup(n, transmission.q, angle),
+                )
 
         return convert
 

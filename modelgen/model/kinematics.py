@@ -21,8 +21,9 @@ def link_poses(frames: Frames) -> list[Pose]:
         frame = frames[i]
         rotation, origin = poses[frame.antecedent]
         # a row of R_parent R is the row of R_parent, a vector of the antecedent, turned to the link
-        turned = (frame.to_link(rotation[0]), frame.to_link(rotation[1]), frame.to_link(rotation[2]))
-        poses[i] = turned, add(origin, times(rotation, frame.origin))
+        with frames.noted(i, "pose"):
+            turned = (frame.to_link(rotation[0]), frame.to_link(rotation[1]), frame.to_link(rotation[2]))
+            poses[i] = turned, add(origin, times(rotation, frame.origin))
     return [poses[i] for i in range(len(frames.frames))]
 
 

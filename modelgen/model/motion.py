@@ -14,7 +14,7 @@ from functools import cached_property
 
 from modelgen.geometry import Frame, Frames
 from modelgen.graph import Expr
-from modelgen.graph.vectors import Matrix, Vector, add, times
+from modelgen.graph.vectors import Matrix, Vector, add, cross, times
 
 
 @dataclass(frozen=True)
@@ -91,6 +91,23 @@ def of_links(frames: Frames, rates: Rates) -> Rates:
     return Rates(less(rates.dq), rates.ddq, reference)
 
 
+def origin_velocities(frames: Frames, rates: Rates, spins: Sequence[Vector]) -> list[Vector]:
+    """Velocity of every frame's origin in its axes [m/s]; spins: angular velocities of the links."""
+    zero = frames.graph.zero
+    moving = of_links(frames, rates)
+    found: dict[int, Vector] = {}
+    for i in frames.order:
+        frame, before = frames[i], frames[i].antecedent
+        v: Vector = (zero, zero, zero)
+        with frames.noted(i, "velocity of its origin"):
+            if before is not None:
+                v = frame.to_link(add(found[before], cross(spins[before], frame.origin)))
+            if frame.coordinate is not None and frame.prismatic:
+                v = (v[0], v[1], v[2] + moving.dq[frame.coordinate])
+        found[i] = v
+    return [found[i] for i in range(len(frames.frames))]
+
+
 def base_motion(frames: Frames) -> LinkMotion:
     """The base at rest, accelerated against gravity."""
     graph = frames.graph
@@ -105,7 +122,8 @@ def link_motions(frames: Frames, rates: Rates) -> list[LinkMotion]:
     motions: dict[int | None, LinkMotion] = {None: base_motion(frames)}
     for i in frames.order:
         frame = frames[i]
-        motions[i] = moved(frame, motions[frame.antecedent], _own(rates, frame.coordinate))
+        with frames.noted(i, "motion"):
+            motions[i] = moved(frame, motions[frame.antecedent], _own(rates, frame.coordinate))
     return [motions[i] for i in range(len(frames.frames))]
 
 

@@ -157,7 +157,8 @@ class Regressor:
         """The ten columns of link i from its own motion."""
         key = (i, slid, back)
         if key not in self._direct:
-            self._direct[key] = self._build(i, slid, back)
+            with self.frames.noted(i, "columns"):
+                self._direct[key] = self._build(i, slid, back)
         return self._direct[key]
 
     def _build(self, i: int, slid: bool, back: int) -> list[Column]:

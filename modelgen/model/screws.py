@@ -25,8 +25,9 @@ class PartialVelocities:
         self.of_link: list[dict[int, Screw]] = [{} for _ in frames.frames]
         for i in frames.order:
             frame = frames[i]
-            for n, (e, v) in self.carried(i, frame.origin).items():
-                self.of_link[i][n] = frame.to_link(e), frame.to_link(v)
+            with frames.noted(i, "velocities by those of the joints"):
+                for n, (e, v) in self.carried(i, frame.origin).items():
+                    self.of_link[i][n] = frame.to_link(e), frame.to_link(v)
             if frame.coordinate is not None:
                 self.of_link[i][frame.coordinate] = self.own(i)
 

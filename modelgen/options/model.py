@@ -7,6 +7,7 @@ from dataclasses import dataclass, field, replace
 
 from modelgen.errors import InputError, suggest
 from modelgen.options.field import documented, option
+from modelgen.options.noise import Noise
 
 GAINS = ("known", "estimated", "row_wise")
 PARTS = ("drives", "effects")
@@ -16,6 +17,7 @@ REALS = ("double", "float")
 @documented(
     fields_beside={
         "identified": "Values of the base parameters by name, to be folded in.",
+        "noise": "Noise of the inputs, which the monitor weighs by; None: all inputs alike.",
         "combined": "Whether there are the functions that the description combines of others.",
     }
 )
@@ -41,6 +43,13 @@ class ModelOptions:
         inverted=True,
         doc="Whether there are derivatives of the dynamics, the largest functions.",
     )
+    watch: bool = option(
+        True,
+        "Leave out the momentum observer and the monitor.",
+        flags=["--no-watch"],
+        inverted=True,
+        doc="Whether there are the momentum observer and the monitor.",
+    )
     jacobian_link: str | None = option(None, "Link that the Jacobian belongs to. Default: the last.", "LINK")
     real: str = option(
         "double", "Real numbers in C where the compiler is not told: float or double.", choices=REALS
@@ -50,6 +59,7 @@ class ModelOptions:
         "Also fold in the nominal values of links and effects: functions that end in _nominal, and an array.",
     )
     identified: Mapping[str, float] = field(default_factory=dict)
+    noise: Noise | None = None
     combined: bool = True
 
     def __post_init__(self) -> None:
@@ -62,7 +72,7 @@ class ModelOptions:
     @property
     def evaluated(self) -> ModelOptions:
         """The same for a model that is evaluated and not printed: without what is made of other functions."""
-        return replace(self, derivatives=False, combined=False)
+        return replace(self, derivatives=False, combined=False, watch=False)
 
 
 def parts_of(given: str | Collection[str]) -> frozenset[str]:

@@ -65,6 +65,10 @@ def _platformio(arm: str, version: str, provenance: Provenance) -> str:
         "frameworks": "*",
         "platforms": "*",
         "headers": f"{arm}.h",
-        "build": {"includeDir": "include", "srcDir": "src"},
+        "build": {
+            "includeDir": "include",
+            "srcDir": "src",
+            "flags": ["-ffp-contract=fast", "-fno-math-errno"],
+        },
     }
     return json.dumps(content, indent=2) + "\n"

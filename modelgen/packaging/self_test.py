@@ -22,6 +22,16 @@ TOLERANCE = ((float(np.finfo(np.float32).eps), 1e-4), (float(np.finfo(np.float64
 _LEAST = 1e-6  # magnitude below which the differences are compared with it instead
 
 
+# Values of inputs that a step takes, the same for every element.
+STEP: Mapping[str, float] = {
+    "dt": 0.001,
+    "state": 0.001,
+    "effect_state": 0.001,
+    "gain": 30.0,
+    "forgetting": 0.99,
+}
+
+
 def self_test(model: Model, provenance: Provenance) -> str:
     """The program's text."""
     arm = model.arm.name
@@ -98,14 +108,21 @@ def _input(model: Model, f: Function, a: Argument, state: int) -> tuple[str, Arr
         return "parameters", _base(model, standard)
     if a.name == "geometry":
         return "geometry", np.array([float(model.arm.symbols[name]) for name in model.geometry])
-    if a.name in ("dt", "state"):
-        return a.name, np.full(a.size, 0.001)
+    if a.length:
+        return a.length.removeprefix("N_").lower(), np.array([_accumulated(a, k) for k in range(a.size)])
+    if a.name in STEP:
+        return a.name, np.full(a.size, STEP[a.name])
     name = f"{a.name}_{state}"
     if a.name in ("sin_q", "cos_q"):
         q = _span(model, "q", a.size, state)
         function = CONTEXT.sin if a.name == "sin_q" else CONTEXT.cos
         return name, np.array([float(function(x)) for x in q])
     return name, _span(model, a.name, a.size, state)
+
+
+def _accumulated(a: Argument, k: int) -> float:
+    """An element of a state that a function carries along: a matrix within it is one that can be solved."""
+    return 1.0 if k in a.diagonal else 0.001
 
 
 def _span(model: Model, name: str, size: int, state: int) -> Array:

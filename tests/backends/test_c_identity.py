@@ -70,7 +70,7 @@ def test_lengths_in_prototypes_are_those_of_the_functions() -> None:
     text = print_model(made, ARMS["ur10e"], {}).files["include/ur10e.h"]
     values = {name: int(value) for name, value in re.findall(r"#define UR10E_(N_\w+)\s+(\d+)", text)}
     for f in made.functions:
-        (signature,) = re.findall(rf"int ur10e_{f.name}\((.*?)\);", text, re.DOTALL)
+        (signature,) = re.findall(rf"ur10e_status_t ur10e_{f.name}\((.*?)\);", text, re.DOTALL)
         lengths = [
             eval(re.sub(r"UR10E_(N_\w+)", lambda m: str(values[m[1]]), x))  # noqa: S307 - a product of numbers
             for x in re.findall(r"\[(.*?)\]", signature)

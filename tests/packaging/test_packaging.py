@@ -220,7 +220,11 @@ def test_library_json_by_its_schema(made: GeneratedArm) -> None:
     content = json.loads(made.files["library.json"])
     assert re.fullmatch(r"[A-Za-z0-9_+. -]{1,50}", content["name"])
     assert VERSION.fullmatch(content["version"])
-    assert content["build"] == {"includeDir": "include", "srcDir": "src"}
+    assert content["build"] == {
+        "includeDir": "include",
+        "srcDir": "src",
+        "flags": ["-ffp-contract=fast", "-fno-math-errno"],
+    }
     assert f"include/{content['headers']}" in made.files
 
 

@@ -182,7 +182,7 @@ def trigonometry(name: str, real: str, span: Interval | None, shift: float) -> l
 
 def prove(model: Model, function: Function, claim: Claim, folder: Path) -> Proof:
     """Run EVA on one function; `folder` holds the arm's C files."""
-    return _run(model.arm.name, function.name, claim, driver(model, function, claim), folder)
+    return run_eva(model.arm.name, function.name, claim, driver(model, function, claim), folder)
 
 
 def prove_sincos(arm: str, folder: Path, real: str) -> Proof:
@@ -201,10 +201,11 @@ def prove_sincos(arm: str, folder: Path, real: str) -> Proof:
             f"{(k + 1) * step!r}{suffix})).cosine;"
         ]
     text = "\n".join([*lines, "    return 0;", "}", ""])
-    return _run(arm, "sincos", Claim(real, finite=True), text, folder)
+    return run_eva(arm, "sincos", Claim(real, finite=True), text, folder)
 
 
-def _run(arm: str, name: str, claim: Claim, text: str, folder: Path) -> Proof:
+def run_eva(arm: str, name: str, claim: Claim, text: str, folder: Path) -> Proof:
+    """Run EVA on a program whose main function is in `text`; `folder` holds the arm's C files."""
     main = folder / f"prove_{name}_{claim.real}.c"
     main.write_text(text, encoding="utf-8")
     cpp = f"-I{folder}/include -I{folder}/src -D{arm.upper()}_REAL={claim.real}"

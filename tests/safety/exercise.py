@@ -17,7 +17,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from modelgen.backends.c.dialect import arrays
-from modelgen.functions import Function, Model
+from modelgen.functions import STATUS_INPUT, Function, Model
 
 SANITIZERS = "-fsanitize=address,undefined,float-divide-by-zero,float-cast-overflow"
 
@@ -40,7 +40,14 @@ typedef struct {
     int ranged;
     const double *low, *high;
 } input;
-typedef struct { const char *name; int inputs; const input *input; int outputs; const int *sizes; } function;
+typedef struct {
+    const char *name;
+    int inputs;
+    const input *input;
+    int outputs;
+    const int *sizes;
+    int stricter;
+} function;
 
 @TABLES@
 
@@ -90,7 +97,7 @@ static int check(int k, real *const x[])
     if (refused && !(status & 4)) {
         wrong(f, x, status, "an input beyond its bound is accepted");
     }
-    if (accepted && (status & 4)) {
+    if (accepted && !f->stricter && (status & 4)) {
         wrong(f, x, status, "inputs within their bounds are refused");
     }
     for (a = 0; a < f->outputs; ++a) {
@@ -271,16 +278,25 @@ def _tables(model: Model) -> str:
         lines.append(f"static const input inputs_{k}[] = {{{', '.join(inputs)}}};")
         sizes = list(arrays(f).values())
         lines.append(f"static const int sizes_{k}[] = {{{', '.join(map(str, sizes))}}};")
-        rows.append(f'    {{"{f.name}", {len(f.arguments)}, inputs_{k}, {len(sizes)}, sizes_{k}}}')
+        rows.append(
+            f'    {{"{f.name}", {len(f.arguments)}, inputs_{k}, {len(sizes)}, sizes_{k}, '
+            f"{int(_stricter(f))}}}"
+        )
     listed = ",\n".join(rows)
     return "\n".join(
         [*lines, f"#define N_FUNCTIONS {len(rows)}", f"static const function functions[] = {{\n{listed}}};"]
     )
 
 
+def _stricter(f: Function) -> bool:
+    """Whether it refuses inputs within their bounds: some have ranges, or what it adds up has a bound."""
+    ranges = any(r.status == STATUS_INPUT for r in f.ranges)
+    return ranges or any(output.checked for output in f.outputs)
+
+
 def _call(model: Model, k: int, f: Function) -> str:
     given = [f"x[{i}]" for i in range(len(f.arguments))] + [f"y[{i}]" for i in range(len(arrays(f)))]
-    return f"    case {k}: return {model.arm.name}_{f.name}({', '.join(given)});"
+    return f"    case {k}: return (int){model.arm.name}_{f.name}({', '.join(given)});"
 
 
 def write(model: Model, real: str, folder: Path) -> Path:

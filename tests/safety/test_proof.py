@@ -19,6 +19,7 @@ SELECTED = [
     ("ariane4", "forward_dynamics"),
     ("ariane4", "joint_from_motor"),
     ("ariane4", "inverse_dynamics_derivatives"),
+    ("ariane4", "momentum_observer_step"),
     ("ur10e", "inverse_dynamics"),
     ("ur10e", "forward_dynamics"),
     ("ur10e", "jacobian"),

@@ -9,6 +9,7 @@ from math import pi
 import numpy as np
 import pytest
 import sympy as sp
+from firmware.states import monitor_state
 from peers.arms import described
 
 from modelgen.description import LeveredDrive, Scalar, load
@@ -117,7 +118,13 @@ def inputs(made: Model, function: Function, rng: np.random.Generator) -> list[np
             value = np.sin(q)
         elif a.name == "cos_q":
             value = np.cos(q)
-        elif a.name == "state":  # a lag of a millimetre, not of metres
+        elif a.name == "gain":
+            value = rng.uniform(5, 50, a.size)
+        elif a.name == "forgetting":
+            value = np.array([0.99])
+        elif a.length == "N_MONITOR_STATES":
+            value = monitor_state(a.size, rng)
+        elif a.name.endswith("state"):  # a lag of a millimetre, not of metres
             value = 0.0005 * value
         elif a.name == "dt":
             value = np.array([0.001])

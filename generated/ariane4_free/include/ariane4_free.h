@@ -8,11 +8,12 @@
  * Source of the figures: The arm ariane4 with joint 4 free; its ratio, torque constant and limits are
  * assumed.
  *
- * Units are SI with radians. Gravity in the base frame: 0, 0, -9.81 m/s^2.
+ * Units are SI with radians; `unit` is that of a motor coordinate in the description, increments say. Gravity in the base frame: 0, 0, -9.81 m/s^2.
  *
  * Every function returns ARIANE4_FREE_STATUS_OK, or the sum of the ARIANE4_FREE_STATUS_ bits that apply; all of
  * its outputs are then zero. Inputs are checked by their Euclidean norm, so one that is not finite is
- * found too (not with -ffast-math). Outputs may not overlap inputs. Matrices are row-major.
+ * found too (not with -ffast-math). Outputs may not overlap inputs. Matrices are row-major. In the sources a
+ * remark behind a value says which link or joint it belongs to, and those after it up to the next remark.
  *
  * Coordinates:
  *
@@ -69,7 +70,7 @@
 #define ARIANE4_FREE_H
 
 /** Number of this generation: header and sources of different ones do not compile together. */
-#define ARIANE4_FREE_GENERATION 0x261051E4UL
+#define ARIANE4_FREE_GENERATION 0x6EBE5535UL
 
 /** SHA-256 of the description that this is the model of, then after a blank the description's version, if any. */
 #define ARIANE4_FREE_MODEL "79391f27012d8ce47144bfbc151d699a1e5dab86799c694096ed4c590478ba07"
@@ -102,6 +103,7 @@
 #define ariane4_free_mass_matrix ariane4_free_mass_matrix_float
 #define ariane4_free_forward_dynamics ariane4_free_forward_dynamics_float
 #define ariane4_free_energy ariane4_free_energy_float
+#define ariane4_free_joint_effort ariane4_free_joint_effort_float
 #define ariane4_free_regressor ariane4_free_regressor_float
 #define ariane4_free_regressor_standard ariane4_free_regressor_standard_float
 #define ariane4_free_regressor_packed ariane4_free_regressor_packed_float
@@ -112,6 +114,7 @@
 #define ariane4_free_mass_matrix_standard ariane4_free_mass_matrix_standard_float
 #define ariane4_free_forward_dynamics_standard ariane4_free_forward_dynamics_standard_float
 #define ariane4_free_energy_standard ariane4_free_energy_standard_float
+#define ariane4_free_joint_effort_standard ariane4_free_joint_effort_standard_float
 #define ariane4_free_forward_kinematics ariane4_free_forward_kinematics_float
 #define ariane4_free_jacobian ariane4_free_jacobian_float
 #define ariane4_free_motor_from_joint ariane4_free_motor_from_joint_float
@@ -121,10 +124,14 @@
 #define ariane4_free_forward_dynamics_derivatives ariane4_free_forward_dynamics_derivatives_float
 #define ariane4_free_inverse_dynamics_derivatives_standard ariane4_free_inverse_dynamics_derivatives_standard_float
 #define ariane4_free_forward_dynamics_derivatives_standard ariane4_free_forward_dynamics_derivatives_standard_float
+#define ariane4_free_momentum_observer_step ariane4_free_momentum_observer_step_float
+#define ariane4_free_momentum_observer_step_standard ariane4_free_momentum_observer_step_standard_float
 #define ariane4_free_check_parameters ariane4_free_check_parameters_float
 #define ariane4_free_check_parameters_standard ariane4_free_check_parameters_standard_float
 #define ariane4_free_model ariane4_free_model_float
 #define ariane4_free_sincos ariane4_free_sincos_float
+#define ariane4_free_onto_strokes ariane4_free_onto_strokes_float
+#define ariane4_free_motors_onto_strokes ariane4_free_motors_onto_strokes_float
 #define ariane4_free_regressor_rows ariane4_free_regressor_rows_float
 #define ariane4_free_regressor_columns ariane4_free_regressor_columns_float
 #endif
@@ -141,11 +148,16 @@ typedef ARIANE4_FREE_REAL ariane4_free_real_t;
 #define ARIANE4_FREE_N_PARAMETERS           34  /**< base parameters */
 #define ARIANE4_FREE_N_STANDARD_PARAMETERS  52  /**< standard parameters */
 #define ARIANE4_FREE_N_PACKED               76  /**< structural non-zeros of the regressor */
+#define ARIANE4_FREE_N_OBSERVER_STATES      4   /**< state of the observer: the momentum that the model
+                                                expects */
 
-#define ARIANE4_FREE_STATUS_OK     0
-#define ARIANE4_FREE_STATUS_STROKE 1 /**< a lever would leave its stroke */
-#define ARIANE4_FREE_STATUS_PIVOT  2 /**< a pivot of the mass matrix vanishes, or the result is beyond 1e15 */
-#define ARIANE4_FREE_STATUS_INPUT  4 /**< an input is not finite or beyond its bound */
+/** ARIANE4_FREE_STATUS_OK or bits of the others. */
+typedef unsigned int ariane4_free_status_t;
+
+#define ARIANE4_FREE_STATUS_OK     0U
+#define ARIANE4_FREE_STATUS_STROKE 1U /**< a lever would leave its stroke */
+#define ARIANE4_FREE_STATUS_PIVOT  2U /**< a pivot of the mass matrix vanishes, or the result is beyond 1e15 */
+#define ARIANE4_FREE_STATUS_INPUT  4U /**< an input is not finite or beyond its bound */
 
 /** Indices of the base parameters. */
 enum {
@@ -259,7 +271,7 @@ const char *ariane4_free_model(void);
  *
  * @return ARIANE4_FREE_STATUS_OK or ARIANE4_FREE_STATUS_INPUT
  */
-int ariane4_free_check_parameters(const ariane4_free_real_t parameters[ARIANE4_FREE_N_PARAMETERS]);
+ariane4_free_status_t ariane4_free_check_parameters(const ariane4_free_real_t parameters[ARIANE4_FREE_N_PARAMETERS]);
 
 /**
  * Whether standard parameters can be used: finite, and their norm within its bound. Every function that takes them checks
@@ -267,7 +279,7 @@ int ariane4_free_check_parameters(const ariane4_free_real_t parameters[ARIANE4_F
  *
  * @return ARIANE4_FREE_STATUS_OK or ARIANE4_FREE_STATUS_INPUT
  */
-int ariane4_free_check_parameters_standard(const ariane4_free_real_t parameters[ARIANE4_FREE_N_STANDARD_PARAMETERS]);
+ariane4_free_status_t ariane4_free_check_parameters_standard(const ariane4_free_real_t parameters[ARIANE4_FREE_N_STANDARD_PARAMETERS]);
 
 /**
  * Inputs that give the accelerations ddq in the state q, dq; base parameters.
@@ -279,9 +291,9 @@ int ariane4_free_check_parameters_standard(const ariane4_free_real_t parameters[
  * @param[out]  out         [4]   [A]        inputs: motor currents, efforts where undriven
  * @return ARIANE4_FREE_STATUS_OK or status bits
  *
- * Operations: 383 (223 mul, 160 add, 0 neg), 6 div, 3 sqrt, 8 trig, 4 other.
+ * Operations: 383 (223 mul, 160 add, 0 neg), 6 div, 3 sqrt, 8 trig, 4 other calls (sign, select and the like).
  */
-int ariane4_free_inverse_dynamics(
+ariane4_free_status_t ariane4_free_inverse_dynamics(
     const ariane4_free_real_t q[ARIANE4_FREE_N_JOINTS],
     const ariane4_free_real_t dq[ARIANE4_FREE_N_JOINTS],
     const ariane4_free_real_t ddq[ARIANE4_FREE_N_JOINTS],
@@ -298,7 +310,7 @@ int ariane4_free_inverse_dynamics(
  *
  * Operations: 69 (48 mul, 21 add, 0 neg), 3 div, 3 sqrt, 8 trig.
  */
-int ariane4_free_gravity(
+ariane4_free_status_t ariane4_free_gravity(
     const ariane4_free_real_t q[ARIANE4_FREE_N_JOINTS],
     const ariane4_free_real_t parameters[ARIANE4_FREE_N_PARAMETERS],
     ariane4_free_real_t out[ARIANE4_FREE_N_JOINTS]);
@@ -312,9 +324,9 @@ int ariane4_free_gravity(
  * @param[out]  out         [4]   [A]      inputs: motor currents, efforts where undriven
  * @return ARIANE4_FREE_STATUS_OK or status bits
  *
- * Operations: 338 (206 mul, 132 add, 0 neg), 6 div, 3 sqrt, 8 trig, 4 other.
+ * Operations: 338 (206 mul, 132 add, 0 neg), 6 div, 3 sqrt, 8 trig, 4 other calls (sign, select and the like).
  */
-int ariane4_free_bias(
+ariane4_free_status_t ariane4_free_bias(
     const ariane4_free_real_t q[ARIANE4_FREE_N_JOINTS],
     const ariane4_free_real_t dq[ARIANE4_FREE_N_JOINTS],
     const ariane4_free_real_t parameters[ARIANE4_FREE_N_PARAMETERS],
@@ -330,7 +342,7 @@ int ariane4_free_bias(
  *
  * Operations: 149 (82 mul, 65 add, 2 neg), 3 div, 3 sqrt, 8 trig.
  */
-int ariane4_free_mass_matrix(
+ariane4_free_status_t ariane4_free_mass_matrix(
     const ariane4_free_real_t q[ARIANE4_FREE_N_JOINTS],
     const ariane4_free_real_t parameters[ARIANE4_FREE_N_PARAMETERS],
     ariane4_free_real_t out[ARIANE4_FREE_N_JOINTS * ARIANE4_FREE_N_JOINTS]);
@@ -346,9 +358,9 @@ int ariane4_free_mass_matrix(
  * @param[out]  out         [4]   [rad/s^2]  joint accelerations
  * @return ARIANE4_FREE_STATUS_OK or status bits
  *
- * Operations: 519 (302 mul, 217 add, 0 neg), 7 div, 3 sqrt, 8 trig, 4 other.
+ * Operations: 519 (302 mul, 217 add, 0 neg), 7 div, 3 sqrt, 8 trig, 4 other calls (sign, select and the like).
  */
-int ariane4_free_forward_dynamics(
+ariane4_free_status_t ariane4_free_forward_dynamics(
     const ariane4_free_real_t q[ARIANE4_FREE_N_JOINTS],
     const ariane4_free_real_t dq[ARIANE4_FREE_N_JOINTS],
     const ariane4_free_real_t input[ARIANE4_FREE_N_JOINTS],
@@ -367,12 +379,32 @@ int ariane4_free_forward_dynamics(
  *
  * Operations: 195 (130 mul, 65 add, 0 neg), 3 div, 3 sqrt, 8 trig.
  */
-int ariane4_free_energy(
+ariane4_free_status_t ariane4_free_energy(
     const ariane4_free_real_t q[ARIANE4_FREE_N_JOINTS],
     const ariane4_free_real_t dq[ARIANE4_FREE_N_JOINTS],
     const ariane4_free_real_t parameters[ARIANE4_FREE_N_PARAMETERS],
     ariane4_free_real_t kinetic[1],
     ariane4_free_real_t potential[1]);
+
+/**
+ * Efforts of the drives at the joints that give the accelerations ddq in the state q, dq; base
+ * parameters.
+ *
+ * @param[in]   q           [4]   [rad]      joint coordinates; norm at most 10000
+ * @param[in]   dq          [4]   [rad/s]    joint velocities; norm at most 100000
+ * @param[in]   ddq         [4]   [rad/s^2]  joint accelerations; norm at most 1e+08
+ * @param[in]   parameters  [34]             base parameters; norm at most 1e+09
+ * @param[out]  out         [4]   [N m]      efforts at the joints
+ * @return ARIANE4_FREE_STATUS_OK or status bits
+ *
+ * Operations: 376 (216 mul, 160 add, 0 neg), 3 div, 3 sqrt, 8 trig, 4 other calls (sign, select and the like).
+ */
+ariane4_free_status_t ariane4_free_joint_effort(
+    const ariane4_free_real_t q[ARIANE4_FREE_N_JOINTS],
+    const ariane4_free_real_t dq[ARIANE4_FREE_N_JOINTS],
+    const ariane4_free_real_t ddq[ARIANE4_FREE_N_JOINTS],
+    const ariane4_free_real_t parameters[ARIANE4_FREE_N_PARAMETERS],
+    ariane4_free_real_t out[ARIANE4_FREE_N_JOINTS]);
 
 /**
  * Inputs per unit of each base parameter.
@@ -384,9 +416,9 @@ int ariane4_free_energy(
  *                                                         row-major
  * @return ARIANE4_FREE_STATUS_OK or status bits
  *
- * Operations: 374 (251 mul, 119 add, 4 neg), 6 div, 3 sqrt, 8 trig, 4 other.
+ * Operations: 374 (251 mul, 119 add, 4 neg), 6 div, 3 sqrt, 8 trig, 4 other calls (sign, select and the like).
  */
-int ariane4_free_regressor(
+ariane4_free_status_t ariane4_free_regressor(
     const ariane4_free_real_t q[ARIANE4_FREE_N_JOINTS],
     const ariane4_free_real_t dq[ARIANE4_FREE_N_JOINTS],
     const ariane4_free_real_t ddq[ARIANE4_FREE_N_JOINTS],
@@ -402,9 +434,9 @@ int ariane4_free_regressor(
  *                                                         row-major
  * @return ARIANE4_FREE_STATUS_OK or status bits
  *
- * Operations: 435 (283 mul, 144 add, 8 neg), 6 div, 3 sqrt, 8 trig, 4 other.
+ * Operations: 435 (283 mul, 144 add, 8 neg), 6 div, 3 sqrt, 8 trig, 4 other calls (sign, select and the like).
  */
-int ariane4_free_regressor_standard(
+ariane4_free_status_t ariane4_free_regressor_standard(
     const ariane4_free_real_t q[ARIANE4_FREE_N_JOINTS],
     const ariane4_free_real_t dq[ARIANE4_FREE_N_JOINTS],
     const ariane4_free_real_t ddq[ARIANE4_FREE_N_JOINTS],
@@ -419,9 +451,9 @@ int ariane4_free_regressor_standard(
  * @param[out]  out  [76]  [A per unit of the parameter]  structural non-zeros, row after row
  * @return ARIANE4_FREE_STATUS_OK or status bits
  *
- * Operations: 374 (251 mul, 119 add, 4 neg), 6 div, 3 sqrt, 8 trig, 4 other.
+ * Operations: 374 (251 mul, 119 add, 4 neg), 6 div, 3 sqrt, 8 trig, 4 other calls (sign, select and the like).
  */
-int ariane4_free_regressor_packed(
+ariane4_free_status_t ariane4_free_regressor_packed(
     const ariane4_free_real_t q[ARIANE4_FREE_N_JOINTS],
     const ariane4_free_real_t dq[ARIANE4_FREE_N_JOINTS],
     const ariane4_free_real_t ddq[ARIANE4_FREE_N_JOINTS],
@@ -439,9 +471,9 @@ int ariane4_free_regressor_packed(
  *                                                           row-major
  * @return ARIANE4_FREE_STATUS_OK or status bits
  *
- * Operations: 412 (277 mul, 132 add, 3 neg), 6 div, 3 sqrt, 8 trig, 4 other.
+ * Operations: 412 (277 mul, 132 add, 3 neg), 6 div, 3 sqrt, 8 trig, 4 other calls (sign, select and the like).
  */
-int ariane4_free_slotine_li_regressor(
+ariane4_free_status_t ariane4_free_slotine_li_regressor(
     const ariane4_free_real_t q[ARIANE4_FREE_N_JOINTS],
     const ariane4_free_real_t dq[ARIANE4_FREE_N_JOINTS],
     const ariane4_free_real_t dq_r[ARIANE4_FREE_N_JOINTS],
@@ -458,9 +490,9 @@ int ariane4_free_slotine_li_regressor(
  * @param[out]  out         [4]   [A]        inputs: motor currents, efforts where undriven
  * @return ARIANE4_FREE_STATUS_OK or status bits
  *
- * Operations: 448 (251 mul, 197 add, 0 neg), 6 div, 3 sqrt, 8 trig, 4 other.
+ * Operations: 448 (251 mul, 197 add, 0 neg), 6 div, 3 sqrt, 8 trig, 4 other calls (sign, select and the like).
  */
-int ariane4_free_inverse_dynamics_standard(
+ariane4_free_status_t ariane4_free_inverse_dynamics_standard(
     const ariane4_free_real_t q[ARIANE4_FREE_N_JOINTS],
     const ariane4_free_real_t dq[ARIANE4_FREE_N_JOINTS],
     const ariane4_free_real_t ddq[ARIANE4_FREE_N_JOINTS],
@@ -477,7 +509,7 @@ int ariane4_free_inverse_dynamics_standard(
  *
  * Operations: 111 (72 mul, 39 add, 0 neg), 3 div, 3 sqrt, 8 trig.
  */
-int ariane4_free_gravity_standard(
+ariane4_free_status_t ariane4_free_gravity_standard(
     const ariane4_free_real_t q[ARIANE4_FREE_N_JOINTS],
     const ariane4_free_real_t parameters[ARIANE4_FREE_N_STANDARD_PARAMETERS],
     ariane4_free_real_t out[ARIANE4_FREE_N_JOINTS]);
@@ -491,9 +523,9 @@ int ariane4_free_gravity_standard(
  * @param[out]  out         [4]   [A]      inputs: motor currents, efforts where undriven
  * @return ARIANE4_FREE_STATUS_OK or status bits
  *
- * Operations: 397 (231 mul, 166 add, 0 neg), 6 div, 3 sqrt, 8 trig, 4 other.
+ * Operations: 397 (231 mul, 166 add, 0 neg), 6 div, 3 sqrt, 8 trig, 4 other calls (sign, select and the like).
  */
-int ariane4_free_bias_standard(
+ariane4_free_status_t ariane4_free_bias_standard(
     const ariane4_free_real_t q[ARIANE4_FREE_N_JOINTS],
     const ariane4_free_real_t dq[ARIANE4_FREE_N_JOINTS],
     const ariane4_free_real_t parameters[ARIANE4_FREE_N_STANDARD_PARAMETERS],
@@ -509,7 +541,7 @@ int ariane4_free_bias_standard(
  *
  * Operations: 181 (95 mul, 86 add, 0 neg), 3 div, 3 sqrt, 8 trig.
  */
-int ariane4_free_mass_matrix_standard(
+ariane4_free_status_t ariane4_free_mass_matrix_standard(
     const ariane4_free_real_t q[ARIANE4_FREE_N_JOINTS],
     const ariane4_free_real_t parameters[ARIANE4_FREE_N_STANDARD_PARAMETERS],
     ariane4_free_real_t out[ARIANE4_FREE_N_JOINTS * ARIANE4_FREE_N_JOINTS]);
@@ -525,9 +557,9 @@ int ariane4_free_mass_matrix_standard(
  * @param[out]  out         [4]   [rad/s^2]  joint accelerations
  * @return ARIANE4_FREE_STATUS_OK or status bits
  *
- * Operations: 611 (340 mul, 271 add, 0 neg), 7 div, 3 sqrt, 8 trig, 4 other.
+ * Operations: 611 (340 mul, 271 add, 0 neg), 7 div, 3 sqrt, 8 trig, 4 other calls (sign, select and the like).
  */
-int ariane4_free_forward_dynamics_standard(
+ariane4_free_status_t ariane4_free_forward_dynamics_standard(
     const ariane4_free_real_t q[ARIANE4_FREE_N_JOINTS],
     const ariane4_free_real_t dq[ARIANE4_FREE_N_JOINTS],
     const ariane4_free_real_t input[ARIANE4_FREE_N_JOINTS],
@@ -546,12 +578,32 @@ int ariane4_free_forward_dynamics_standard(
  *
  * Operations: 245 (158 mul, 87 add, 0 neg), 3 div, 3 sqrt, 8 trig.
  */
-int ariane4_free_energy_standard(
+ariane4_free_status_t ariane4_free_energy_standard(
     const ariane4_free_real_t q[ARIANE4_FREE_N_JOINTS],
     const ariane4_free_real_t dq[ARIANE4_FREE_N_JOINTS],
     const ariane4_free_real_t parameters[ARIANE4_FREE_N_STANDARD_PARAMETERS],
     ariane4_free_real_t kinetic[1],
     ariane4_free_real_t potential[1]);
+
+/**
+ * Efforts of the drives at the joints that give the accelerations ddq in the state q, dq; standard
+ * parameters.
+ *
+ * @param[in]   q           [4]   [rad]      joint coordinates; norm at most 10000
+ * @param[in]   dq          [4]   [rad/s]    joint velocities; norm at most 100000
+ * @param[in]   ddq         [4]   [rad/s^2]  joint accelerations; norm at most 1e+08
+ * @param[in]   parameters  [52]             standard parameters; norm at most 1e+09
+ * @param[out]  out         [4]   [N m]      efforts at the joints
+ * @return ARIANE4_FREE_STATUS_OK or status bits
+ *
+ * Operations: 441 (244 mul, 197 add, 0 neg), 3 div, 3 sqrt, 8 trig, 4 other calls (sign, select and the like).
+ */
+ariane4_free_status_t ariane4_free_joint_effort_standard(
+    const ariane4_free_real_t q[ARIANE4_FREE_N_JOINTS],
+    const ariane4_free_real_t dq[ARIANE4_FREE_N_JOINTS],
+    const ariane4_free_real_t ddq[ARIANE4_FREE_N_JOINTS],
+    const ariane4_free_real_t parameters[ARIANE4_FREE_N_STANDARD_PARAMETERS],
+    ariane4_free_real_t out[ARIANE4_FREE_N_JOINTS]);
 
 /**
  * Homogeneous transforms from every link's frame to the base, link after link.
@@ -566,7 +618,7 @@ int ariane4_free_energy_standard(
  *
  * Operations: 66 (37 mul, 18 add, 11 neg), 8 trig.
  */
-int ariane4_free_forward_kinematics(
+ariane4_free_status_t ariane4_free_forward_kinematics(
     const ariane4_free_real_t q[ARIANE4_FREE_N_JOINTS],
     ariane4_free_real_t out[16 * ARIANE4_FREE_N_LINKS]);
 
@@ -579,7 +631,7 @@ int ariane4_free_forward_kinematics(
  *
  * Operations: 57 (35 mul, 18 add, 4 neg), 6 trig.
  */
-int ariane4_free_jacobian(
+ariane4_free_status_t ariane4_free_jacobian(
     const ariane4_free_real_t q[ARIANE4_FREE_N_JOINTS],
     ariane4_free_real_t out[6 * ARIANE4_FREE_N_JOINTS]);
 
@@ -596,7 +648,7 @@ int ariane4_free_jacobian(
  *
  * Operations: 75 (57 mul, 18 add, 0 neg), 3 div, 3 sqrt, 6 trig.
  */
-int ariane4_free_motor_from_joint(
+ariane4_free_status_t ariane4_free_motor_from_joint(
     const ariane4_free_real_t q[ARIANE4_FREE_N_JOINTS],
     const ariane4_free_real_t dq[ARIANE4_FREE_N_JOINTS],
     const ariane4_free_real_t ddq[ARIANE4_FREE_N_JOINTS],
@@ -617,7 +669,7 @@ int ariane4_free_motor_from_joint(
  *
  * Operations: 81 (54 mul, 24 add, 3 neg), 3 div, 3 sqrt, 3 trig.
  */
-int ariane4_free_joint_from_motor(
+ariane4_free_status_t ariane4_free_joint_from_motor(
     const ariane4_free_real_t q_m[ARIANE4_FREE_N_JOINTS],
     const ariane4_free_real_t dq_m[ARIANE4_FREE_N_JOINTS],
     const ariane4_free_real_t ddq_m[ARIANE4_FREE_N_JOINTS],
@@ -628,13 +680,13 @@ int ariane4_free_joint_from_motor(
 /**
  * Joint effort per input.
  *
- * @param[in]   q    [4]  [rad]            joint coordinates; norm at most 10000
- * @param[out]  out  [4]  [(N m) per (A)]  drive gains K
+ * @param[in]   q    [4]  [rad]        joint coordinates; norm at most 10000
+ * @param[out]  out  [4]  [N m per A]  drive gains K
  * @return ARIANE4_FREE_STATUS_OK or status bits
  *
  * Operations: 33 (24 mul, 9 add, 0 neg), 3 div, 3 sqrt, 6 trig.
  */
-int ariane4_free_drive_gain(
+ariane4_free_status_t ariane4_free_drive_gain(
     const ariane4_free_real_t q[ARIANE4_FREE_N_JOINTS],
     ariane4_free_real_t out[ARIANE4_FREE_N_JOINTS]);
 
@@ -642,19 +694,19 @@ int ariane4_free_drive_gain(
  * Inputs that give the accelerations ddq, and their derivatives; at a kink of a law, as of dry
  * friction at rest, the mean of both sides; base parameters.
  *
- * @param[in]   q             [4]   [rad]                joint coordinates; norm at most 10000
- * @param[in]   dq            [4]   [rad/s]              joint velocities; norm at most 100000
- * @param[in]   ddq           [4]   [rad/s^2]            joint accelerations; norm at most 1e+08
- * @param[in]   parameters    [34]                       base parameters; norm at most 1e+09
- * @param[out]  input         [4]   [A]                  inputs: motor currents, efforts where undriven
- * @param[out]  input_by_q    [16]  [(A) per (rad)]      d input / d q; 4 x 4, row-major
- * @param[out]  input_by_dq   [16]  [(A) per (rad/s)]    d input / d dq; 4 x 4, row-major
- * @param[out]  input_by_ddq  [16]  [(A) per (rad/s^2)]  d input / d ddq; 4 x 4, row-major
+ * @param[in]   q             [4]   [rad]              joint coordinates; norm at most 10000
+ * @param[in]   dq            [4]   [rad/s]            joint velocities; norm at most 100000
+ * @param[in]   ddq           [4]   [rad/s^2]          joint accelerations; norm at most 1e+08
+ * @param[in]   parameters    [34]                     base parameters; norm at most 1e+09
+ * @param[out]  input         [4]   [A]                inputs: motor currents, efforts where undriven
+ * @param[out]  input_by_q    [16]  [A per rad]        d input / d q; 4 x 4, row-major
+ * @param[out]  input_by_dq   [16]  [A per (rad/s)]    d input / d dq; 4 x 4, row-major
+ * @param[out]  input_by_ddq  [16]  [A per (rad/s^2)]  d input / d ddq; 4 x 4, row-major
  * @return ARIANE4_FREE_STATUS_OK or status bits
  *
- * Operations: 1390 (824 mul, 562 add, 4 neg), 12 div, 3 sqrt, 8 trig, 7 other.
+ * Operations: 1390 (824 mul, 562 add, 4 neg), 12 div, 3 sqrt, 8 trig, 7 other calls (sign, select and the like).
  */
-int ariane4_free_inverse_dynamics_derivatives(
+ariane4_free_status_t ariane4_free_inverse_dynamics_derivatives(
     const ariane4_free_real_t q[ARIANE4_FREE_N_JOINTS],
     const ariane4_free_real_t dq[ARIANE4_FREE_N_JOINTS],
     const ariane4_free_real_t ddq[ARIANE4_FREE_N_JOINTS],
@@ -674,14 +726,14 @@ int ariane4_free_inverse_dynamics_derivatives(
  *                                                           norm at most 1e+09
  * @param[in]   parameters    [34]                           base parameters; norm at most 1e+09
  * @param[out]  ddq           [4]   [rad/s^2]                joint accelerations
- * @param[out]  ddq_by_q      [16]  [(rad/s^2) per (rad)]    d ddq / d q; 4 x 4, row-major
+ * @param[out]  ddq_by_q      [16]  [(rad/s^2) per rad]      d ddq / d q; 4 x 4, row-major
  * @param[out]  ddq_by_dq     [16]  [(rad/s^2) per (rad/s)]  d ddq / d dq; 4 x 4, row-major
- * @param[out]  ddq_by_input  [16]  [(rad/s^2) per (A)]      d ddq / d input; 4 x 4, row-major
+ * @param[out]  ddq_by_input  [16]  [(rad/s^2) per A]        d ddq / d input; 4 x 4, row-major
  * @return ARIANE4_FREE_STATUS_OK or status bits
  *
- * Operations: 1887 (1102 mul, 782 add, 3 neg), 16 div, 3 sqrt, 8 trig, 7 other.
+ * Operations: 1887 (1102 mul, 782 add, 3 neg), 16 div, 3 sqrt, 8 trig, 7 other calls (sign, select and the like).
  */
-int ariane4_free_forward_dynamics_derivatives(
+ariane4_free_status_t ariane4_free_forward_dynamics_derivatives(
     const ariane4_free_real_t q[ARIANE4_FREE_N_JOINTS],
     const ariane4_free_real_t dq[ARIANE4_FREE_N_JOINTS],
     const ariane4_free_real_t input[ARIANE4_FREE_N_JOINTS],
@@ -695,19 +747,19 @@ int ariane4_free_forward_dynamics_derivatives(
  * Inputs that give the accelerations ddq, and their derivatives; at a kink of a law, as of dry
  * friction at rest, the mean of both sides; standard parameters.
  *
- * @param[in]   q             [4]   [rad]                joint coordinates; norm at most 10000
- * @param[in]   dq            [4]   [rad/s]              joint velocities; norm at most 100000
- * @param[in]   ddq           [4]   [rad/s^2]            joint accelerations; norm at most 1e+08
- * @param[in]   parameters    [52]                       standard parameters; norm at most 1e+09
- * @param[out]  input         [4]   [A]                  inputs: motor currents, efforts where undriven
- * @param[out]  input_by_q    [16]  [(A) per (rad)]      d input / d q; 4 x 4, row-major
- * @param[out]  input_by_dq   [16]  [(A) per (rad/s)]    d input / d dq; 4 x 4, row-major
- * @param[out]  input_by_ddq  [16]  [(A) per (rad/s^2)]  d input / d ddq; 4 x 4, row-major
+ * @param[in]   q             [4]   [rad]              joint coordinates; norm at most 10000
+ * @param[in]   dq            [4]   [rad/s]            joint velocities; norm at most 100000
+ * @param[in]   ddq           [4]   [rad/s^2]          joint accelerations; norm at most 1e+08
+ * @param[in]   parameters    [52]                     standard parameters; norm at most 1e+09
+ * @param[out]  input         [4]   [A]                inputs: motor currents, efforts where undriven
+ * @param[out]  input_by_q    [16]  [A per rad]        d input / d q; 4 x 4, row-major
+ * @param[out]  input_by_dq   [16]  [A per (rad/s)]    d input / d dq; 4 x 4, row-major
+ * @param[out]  input_by_ddq  [16]  [A per (rad/s^2)]  d input / d ddq; 4 x 4, row-major
  * @return ARIANE4_FREE_STATUS_OK or status bits
  *
- * Operations: 1564 (898 mul, 662 add, 4 neg), 12 div, 3 sqrt, 8 trig, 7 other.
+ * Operations: 1564 (898 mul, 662 add, 4 neg), 12 div, 3 sqrt, 8 trig, 7 other calls (sign, select and the like).
  */
-int ariane4_free_inverse_dynamics_derivatives_standard(
+ariane4_free_status_t ariane4_free_inverse_dynamics_derivatives_standard(
     const ariane4_free_real_t q[ARIANE4_FREE_N_JOINTS],
     const ariane4_free_real_t dq[ARIANE4_FREE_N_JOINTS],
     const ariane4_free_real_t ddq[ARIANE4_FREE_N_JOINTS],
@@ -727,14 +779,14 @@ int ariane4_free_inverse_dynamics_derivatives_standard(
  *                                                           norm at most 1e+09
  * @param[in]   parameters    [52]                           standard parameters; norm at most 1e+09
  * @param[out]  ddq           [4]   [rad/s^2]                joint accelerations
- * @param[out]  ddq_by_q      [16]  [(rad/s^2) per (rad)]    d ddq / d q; 4 x 4, row-major
+ * @param[out]  ddq_by_q      [16]  [(rad/s^2) per rad]      d ddq / d q; 4 x 4, row-major
  * @param[out]  ddq_by_dq     [16]  [(rad/s^2) per (rad/s)]  d ddq / d dq; 4 x 4, row-major
- * @param[out]  ddq_by_input  [16]  [(rad/s^2) per (A)]      d ddq / d input; 4 x 4, row-major
+ * @param[out]  ddq_by_input  [16]  [(rad/s^2) per A]        d ddq / d input; 4 x 4, row-major
  * @return ARIANE4_FREE_STATUS_OK or status bits
  *
- * Operations: 2111 (1198 mul, 909 add, 4 neg), 16 div, 3 sqrt, 8 trig, 7 other.
+ * Operations: 2111 (1198 mul, 909 add, 4 neg), 16 div, 3 sqrt, 8 trig, 7 other calls (sign, select and the like).
  */
-int ariane4_free_forward_dynamics_derivatives_standard(
+ariane4_free_status_t ariane4_free_forward_dynamics_derivatives_standard(
     const ariane4_free_real_t q[ARIANE4_FREE_N_JOINTS],
     const ariane4_free_real_t dq[ARIANE4_FREE_N_JOINTS],
     const ariane4_free_real_t input[ARIANE4_FREE_N_JOINTS],
@@ -743,6 +795,455 @@ int ariane4_free_forward_dynamics_derivatives_standard(
     ariane4_free_real_t ddq_by_q[ARIANE4_FREE_N_JOINTS * ARIANE4_FREE_N_JOINTS],
     ariane4_free_real_t ddq_by_dq[ARIANE4_FREE_N_JOINTS * ARIANE4_FREE_N_JOINTS],
     ariane4_free_real_t ddq_by_input[ARIANE4_FREE_N_JOINTS * ARIANE4_FREE_N_JOINTS]);
+
+/**
+ * External efforts at the joints by the generalised momentum, with a delay of 1 / gain; state: zero at
+ * first, then what the step before gave; base parameters.
+ *
+ * @param[in]   q           [4]   [rad]       joint coordinates; norm at most 10000
+ * @param[in]   dq          [4]   [rad/s]     joint velocities; norm at most 100000
+ * @param[in]   input       [4]   [A]         inputs: motor currents, efforts where undriven; norm at most
+ *                                            1e+09
+ * @param[in]   dt          [1]   [s]         time step; norm at most 10000
+ * @param[in]   gain        [4]   [1/s]       gains of the observer, gain dt below 1; norm at most 100000
+ * @param[in]   parameters  [34]              base parameters; norm at most 1e+09
+ * @param[in]   state       [4]   [kg m^2/s]  state of the observer: the momentum that the model expects; norm
+ *                                            at most 1e+09
+ * @param[out]  state_next  [4]   [kg m^2/s]  state after the step
+ * @param[out]  external    [4]   [N m]       efforts that act on the arm from outside
+ * @return ARIANE4_FREE_STATUS_OK or status bits
+ *
+ * Operations: 419 (271 mul, 144 add, 4 neg), 3 div, 3 sqrt, 8 trig, 4 other calls (sign, select and the like).
+ */
+ariane4_free_status_t ariane4_free_momentum_observer_step(
+    const ariane4_free_real_t q[ARIANE4_FREE_N_JOINTS],
+    const ariane4_free_real_t dq[ARIANE4_FREE_N_JOINTS],
+    const ariane4_free_real_t input[ARIANE4_FREE_N_JOINTS],
+    const ariane4_free_real_t dt[1],
+    const ariane4_free_real_t gain[ARIANE4_FREE_N_JOINTS],
+    const ariane4_free_real_t parameters[ARIANE4_FREE_N_PARAMETERS],
+    const ariane4_free_real_t state[ARIANE4_FREE_N_OBSERVER_STATES],
+    ariane4_free_real_t state_next[ARIANE4_FREE_N_OBSERVER_STATES],
+    ariane4_free_real_t external[ARIANE4_FREE_N_JOINTS]);
+
+/**
+ * External efforts at the joints by the generalised momentum, with a delay of 1 / gain; state: zero at
+ * first, then what the step before gave; standard parameters.
+ *
+ * @param[in]   q           [4]   [rad]       joint coordinates; norm at most 10000
+ * @param[in]   dq          [4]   [rad/s]     joint velocities; norm at most 100000
+ * @param[in]   input       [4]   [A]         inputs: motor currents, efforts where undriven; norm at most
+ *                                            1e+09
+ * @param[in]   dt          [1]   [s]         time step; norm at most 10000
+ * @param[in]   gain        [4]   [1/s]       gains of the observer, gain dt below 1; norm at most 100000
+ * @param[in]   parameters  [52]              standard parameters; norm at most 1e+09
+ * @param[in]   state       [4]   [kg m^2/s]  state of the observer: the momentum that the model expects; norm
+ *                                            at most 1e+09
+ * @param[out]  state_next  [4]   [kg m^2/s]  state after the step
+ * @param[out]  external    [4]   [N m]       efforts that act on the arm from outside
+ * @return ARIANE4_FREE_STATUS_OK or status bits
+ *
+ * Operations: 505 (317 mul, 184 add, 4 neg), 3 div, 3 sqrt, 8 trig, 4 other calls (sign, select and the like).
+ */
+ariane4_free_status_t ariane4_free_momentum_observer_step_standard(
+    const ariane4_free_real_t q[ARIANE4_FREE_N_JOINTS],
+    const ariane4_free_real_t dq[ARIANE4_FREE_N_JOINTS],
+    const ariane4_free_real_t input[ARIANE4_FREE_N_JOINTS],
+    const ariane4_free_real_t dt[1],
+    const ariane4_free_real_t gain[ARIANE4_FREE_N_JOINTS],
+    const ariane4_free_real_t parameters[ARIANE4_FREE_N_STANDARD_PARAMETERS],
+    const ariane4_free_real_t state[ARIANE4_FREE_N_OBSERVER_STATES],
+    ariane4_free_real_t state_next[ARIANE4_FREE_N_OBSERVER_STATES],
+    ariane4_free_real_t external[ARIANE4_FREE_N_JOINTS]);
+
+/*
+ * At the ends of the strokes, where noise of an encoder may lead beyond: the functions above answer with zeros
+ * there, those that end in _nearest with what they give at the nearest point of the strokes, and the bit
+ * ARIANE4_FREE_STATUS_STROKE. With any other bit, all of their outputs are zero too.
+ */
+
+/**
+ * The nearest joint coordinates within the strokes: `nearest` is `q` where these are within.
+ *
+ * @return ARIANE4_FREE_STATUS_OK; ARIANE4_FREE_STATUS_STROKE where they are beyond; ARIANE4_FREE_STATUS_INPUT, and
+ *         `nearest` is `q`, where one is not finite or beyond its bound
+ */
+ariane4_free_status_t ariane4_free_onto_strokes(
+    const ariane4_free_real_t q[ARIANE4_FREE_N_JOINTS],
+    ariane4_free_real_t nearest[ARIANE4_FREE_N_JOINTS]);
+
+/**
+ * The nearest motor coordinates within the strokes: `nearest` is `q_m` where these are within.
+ *
+ * @return ARIANE4_FREE_STATUS_OK; ARIANE4_FREE_STATUS_STROKE where they are beyond; ARIANE4_FREE_STATUS_INPUT, and
+ *         `nearest` is `q_m`, where one is not finite or beyond its bound
+ */
+ariane4_free_status_t ariane4_free_motors_onto_strokes(
+    const ariane4_free_real_t q_m[ARIANE4_FREE_N_JOINTS],
+    ariane4_free_real_t nearest[ARIANE4_FREE_N_JOINTS]);
+
+/** ariane4_free_inverse_dynamics at the nearest point of the strokes. */
+static inline ariane4_free_status_t ariane4_free_inverse_dynamics_nearest(
+    const ariane4_free_real_t q[ARIANE4_FREE_N_JOINTS],
+    const ariane4_free_real_t dq[ARIANE4_FREE_N_JOINTS],
+    const ariane4_free_real_t ddq[ARIANE4_FREE_N_JOINTS],
+    const ariane4_free_real_t parameters[ARIANE4_FREE_N_PARAMETERS],
+    ariane4_free_real_t out[ARIANE4_FREE_N_JOINTS])
+{
+    ariane4_free_real_t nearest[ARIANE4_FREE_N_JOINTS];
+    const ariane4_free_status_t beyond = ariane4_free_onto_strokes(q, nearest);
+    return beyond | ariane4_free_inverse_dynamics(nearest, dq, ddq, parameters, out);
+}
+
+/** ariane4_free_gravity at the nearest point of the strokes. */
+static inline ariane4_free_status_t ariane4_free_gravity_nearest(
+    const ariane4_free_real_t q[ARIANE4_FREE_N_JOINTS],
+    const ariane4_free_real_t parameters[ARIANE4_FREE_N_PARAMETERS],
+    ariane4_free_real_t out[ARIANE4_FREE_N_JOINTS])
+{
+    ariane4_free_real_t nearest[ARIANE4_FREE_N_JOINTS];
+    const ariane4_free_status_t beyond = ariane4_free_onto_strokes(q, nearest);
+    return beyond | ariane4_free_gravity(nearest, parameters, out);
+}
+
+/** ariane4_free_bias at the nearest point of the strokes. */
+static inline ariane4_free_status_t ariane4_free_bias_nearest(
+    const ariane4_free_real_t q[ARIANE4_FREE_N_JOINTS],
+    const ariane4_free_real_t dq[ARIANE4_FREE_N_JOINTS],
+    const ariane4_free_real_t parameters[ARIANE4_FREE_N_PARAMETERS],
+    ariane4_free_real_t out[ARIANE4_FREE_N_JOINTS])
+{
+    ariane4_free_real_t nearest[ARIANE4_FREE_N_JOINTS];
+    const ariane4_free_status_t beyond = ariane4_free_onto_strokes(q, nearest);
+    return beyond | ariane4_free_bias(nearest, dq, parameters, out);
+}
+
+/** ariane4_free_mass_matrix at the nearest point of the strokes. */
+static inline ariane4_free_status_t ariane4_free_mass_matrix_nearest(
+    const ariane4_free_real_t q[ARIANE4_FREE_N_JOINTS],
+    const ariane4_free_real_t parameters[ARIANE4_FREE_N_PARAMETERS],
+    ariane4_free_real_t out[ARIANE4_FREE_N_JOINTS * ARIANE4_FREE_N_JOINTS])
+{
+    ariane4_free_real_t nearest[ARIANE4_FREE_N_JOINTS];
+    const ariane4_free_status_t beyond = ariane4_free_onto_strokes(q, nearest);
+    return beyond | ariane4_free_mass_matrix(nearest, parameters, out);
+}
+
+/** ariane4_free_forward_dynamics at the nearest point of the strokes. */
+static inline ariane4_free_status_t ariane4_free_forward_dynamics_nearest(
+    const ariane4_free_real_t q[ARIANE4_FREE_N_JOINTS],
+    const ariane4_free_real_t dq[ARIANE4_FREE_N_JOINTS],
+    const ariane4_free_real_t input[ARIANE4_FREE_N_JOINTS],
+    const ariane4_free_real_t parameters[ARIANE4_FREE_N_PARAMETERS],
+    ariane4_free_real_t out[ARIANE4_FREE_N_JOINTS])
+{
+    ariane4_free_real_t nearest[ARIANE4_FREE_N_JOINTS];
+    const ariane4_free_status_t beyond = ariane4_free_onto_strokes(q, nearest);
+    return beyond | ariane4_free_forward_dynamics(nearest, dq, input, parameters, out);
+}
+
+/** ariane4_free_energy at the nearest point of the strokes. */
+static inline ariane4_free_status_t ariane4_free_energy_nearest(
+    const ariane4_free_real_t q[ARIANE4_FREE_N_JOINTS],
+    const ariane4_free_real_t dq[ARIANE4_FREE_N_JOINTS],
+    const ariane4_free_real_t parameters[ARIANE4_FREE_N_PARAMETERS],
+    ariane4_free_real_t kinetic[1],
+    ariane4_free_real_t potential[1])
+{
+    ariane4_free_real_t nearest[ARIANE4_FREE_N_JOINTS];
+    const ariane4_free_status_t beyond = ariane4_free_onto_strokes(q, nearest);
+    return beyond | ariane4_free_energy(nearest, dq, parameters, kinetic, potential);
+}
+
+/** ariane4_free_joint_effort at the nearest point of the strokes. */
+static inline ariane4_free_status_t ariane4_free_joint_effort_nearest(
+    const ariane4_free_real_t q[ARIANE4_FREE_N_JOINTS],
+    const ariane4_free_real_t dq[ARIANE4_FREE_N_JOINTS],
+    const ariane4_free_real_t ddq[ARIANE4_FREE_N_JOINTS],
+    const ariane4_free_real_t parameters[ARIANE4_FREE_N_PARAMETERS],
+    ariane4_free_real_t out[ARIANE4_FREE_N_JOINTS])
+{
+    ariane4_free_real_t nearest[ARIANE4_FREE_N_JOINTS];
+    const ariane4_free_status_t beyond = ariane4_free_onto_strokes(q, nearest);
+    return beyond | ariane4_free_joint_effort(nearest, dq, ddq, parameters, out);
+}
+
+/** ariane4_free_regressor at the nearest point of the strokes. */
+static inline ariane4_free_status_t ariane4_free_regressor_nearest(
+    const ariane4_free_real_t q[ARIANE4_FREE_N_JOINTS],
+    const ariane4_free_real_t dq[ARIANE4_FREE_N_JOINTS],
+    const ariane4_free_real_t ddq[ARIANE4_FREE_N_JOINTS],
+    ariane4_free_real_t out[ARIANE4_FREE_N_JOINTS * ARIANE4_FREE_N_PARAMETERS])
+{
+    ariane4_free_real_t nearest[ARIANE4_FREE_N_JOINTS];
+    const ariane4_free_status_t beyond = ariane4_free_onto_strokes(q, nearest);
+    return beyond | ariane4_free_regressor(nearest, dq, ddq, out);
+}
+
+/** ariane4_free_regressor_standard at the nearest point of the strokes. */
+static inline ariane4_free_status_t ariane4_free_regressor_standard_nearest(
+    const ariane4_free_real_t q[ARIANE4_FREE_N_JOINTS],
+    const ariane4_free_real_t dq[ARIANE4_FREE_N_JOINTS],
+    const ariane4_free_real_t ddq[ARIANE4_FREE_N_JOINTS],
+    ariane4_free_real_t out[ARIANE4_FREE_N_JOINTS * ARIANE4_FREE_N_STANDARD_PARAMETERS])
+{
+    ariane4_free_real_t nearest[ARIANE4_FREE_N_JOINTS];
+    const ariane4_free_status_t beyond = ariane4_free_onto_strokes(q, nearest);
+    return beyond | ariane4_free_regressor_standard(nearest, dq, ddq, out);
+}
+
+/** ariane4_free_regressor_packed at the nearest point of the strokes. */
+static inline ariane4_free_status_t ariane4_free_regressor_packed_nearest(
+    const ariane4_free_real_t q[ARIANE4_FREE_N_JOINTS],
+    const ariane4_free_real_t dq[ARIANE4_FREE_N_JOINTS],
+    const ariane4_free_real_t ddq[ARIANE4_FREE_N_JOINTS],
+    ariane4_free_real_t out[ARIANE4_FREE_N_PACKED])
+{
+    ariane4_free_real_t nearest[ARIANE4_FREE_N_JOINTS];
+    const ariane4_free_status_t beyond = ariane4_free_onto_strokes(q, nearest);
+    return beyond | ariane4_free_regressor_packed(nearest, dq, ddq, out);
+}
+
+/** ariane4_free_slotine_li_regressor at the nearest point of the strokes. */
+static inline ariane4_free_status_t ariane4_free_slotine_li_regressor_nearest(
+    const ariane4_free_real_t q[ARIANE4_FREE_N_JOINTS],
+    const ariane4_free_real_t dq[ARIANE4_FREE_N_JOINTS],
+    const ariane4_free_real_t dq_r[ARIANE4_FREE_N_JOINTS],
+    const ariane4_free_real_t ddq_r[ARIANE4_FREE_N_JOINTS],
+    ariane4_free_real_t out[ARIANE4_FREE_N_JOINTS * ARIANE4_FREE_N_PARAMETERS])
+{
+    ariane4_free_real_t nearest[ARIANE4_FREE_N_JOINTS];
+    const ariane4_free_status_t beyond = ariane4_free_onto_strokes(q, nearest);
+    return beyond | ariane4_free_slotine_li_regressor(nearest, dq, dq_r, ddq_r, out);
+}
+
+/** ariane4_free_inverse_dynamics_standard at the nearest point of the strokes. */
+static inline ariane4_free_status_t ariane4_free_inverse_dynamics_standard_nearest(
+    const ariane4_free_real_t q[ARIANE4_FREE_N_JOINTS],
+    const ariane4_free_real_t dq[ARIANE4_FREE_N_JOINTS],
+    const ariane4_free_real_t ddq[ARIANE4_FREE_N_JOINTS],
+    const ariane4_free_real_t parameters[ARIANE4_FREE_N_STANDARD_PARAMETERS],
+    ariane4_free_real_t out[ARIANE4_FREE_N_JOINTS])
+{
+    ariane4_free_real_t nearest[ARIANE4_FREE_N_JOINTS];
+    const ariane4_free_status_t beyond = ariane4_free_onto_strokes(q, nearest);
+    return beyond | ariane4_free_inverse_dynamics_standard(nearest, dq, ddq, parameters, out);
+}
+
+/** ariane4_free_gravity_standard at the nearest point of the strokes. */
+static inline ariane4_free_status_t ariane4_free_gravity_standard_nearest(
+    const ariane4_free_real_t q[ARIANE4_FREE_N_JOINTS],
+    const ariane4_free_real_t parameters[ARIANE4_FREE_N_STANDARD_PARAMETERS],
+    ariane4_free_real_t out[ARIANE4_FREE_N_JOINTS])
+{
+    ariane4_free_real_t nearest[ARIANE4_FREE_N_JOINTS];
+    const ariane4_free_status_t beyond = ariane4_free_onto_strokes(q, nearest);
+    return beyond | ariane4_free_gravity_standard(nearest, parameters, out);
+}
+
+/** ariane4_free_bias_standard at the nearest point of the strokes. */
+static inline ariane4_free_status_t ariane4_free_bias_standard_nearest(
+    const ariane4_free_real_t q[ARIANE4_FREE_N_JOINTS],
+    const ariane4_free_real_t dq[ARIANE4_FREE_N_JOINTS],
+    const ariane4_free_real_t parameters[ARIANE4_FREE_N_STANDARD_PARAMETERS],
+    ariane4_free_real_t out[ARIANE4_FREE_N_JOINTS])
+{
+    ariane4_free_real_t nearest[ARIANE4_FREE_N_JOINTS];
+    const ariane4_free_status_t beyond = ariane4_free_onto_strokes(q, nearest);
+    return beyond | ariane4_free_bias_standard(nearest, dq, parameters, out);
+}
+
+/** ariane4_free_mass_matrix_standard at the nearest point of the strokes. */
+static inline ariane4_free_status_t ariane4_free_mass_matrix_standard_nearest(
+    const ariane4_free_real_t q[ARIANE4_FREE_N_JOINTS],
+    const ariane4_free_real_t parameters[ARIANE4_FREE_N_STANDARD_PARAMETERS],
+    ariane4_free_real_t out[ARIANE4_FREE_N_JOINTS * ARIANE4_FREE_N_JOINTS])
+{
+    ariane4_free_real_t nearest[ARIANE4_FREE_N_JOINTS];
+    const ariane4_free_status_t beyond = ariane4_free_onto_strokes(q, nearest);
+    return beyond | ariane4_free_mass_matrix_standard(nearest, parameters, out);
+}
+
+/** ariane4_free_forward_dynamics_standard at the nearest point of the strokes. */
+static inline ariane4_free_status_t ariane4_free_forward_dynamics_standard_nearest(
+    const ariane4_free_real_t q[ARIANE4_FREE_N_JOINTS],
+    const ariane4_free_real_t dq[ARIANE4_FREE_N_JOINTS],
+    const ariane4_free_real_t input[ARIANE4_FREE_N_JOINTS],
+    const ariane4_free_real_t parameters[ARIANE4_FREE_N_STANDARD_PARAMETERS],
+    ariane4_free_real_t out[ARIANE4_FREE_N_JOINTS])
+{
+    ariane4_free_real_t nearest[ARIANE4_FREE_N_JOINTS];
+    const ariane4_free_status_t beyond = ariane4_free_onto_strokes(q, nearest);
+    return beyond | ariane4_free_forward_dynamics_standard(nearest, dq, input, parameters, out);
+}
+
+/** ariane4_free_energy_standard at the nearest point of the strokes. */
+static inline ariane4_free_status_t ariane4_free_energy_standard_nearest(
+    const ariane4_free_real_t q[ARIANE4_FREE_N_JOINTS],
+    const ariane4_free_real_t dq[ARIANE4_FREE_N_JOINTS],
+    const ariane4_free_real_t parameters[ARIANE4_FREE_N_STANDARD_PARAMETERS],
+    ariane4_free_real_t kinetic[1],
+    ariane4_free_real_t potential[1])
+{
+    ariane4_free_real_t nearest[ARIANE4_FREE_N_JOINTS];
+    const ariane4_free_status_t beyond = ariane4_free_onto_strokes(q, nearest);
+    return beyond | ariane4_free_energy_standard(nearest, dq, parameters, kinetic, potential);
+}
+
+/** ariane4_free_joint_effort_standard at the nearest point of the strokes. */
+static inline ariane4_free_status_t ariane4_free_joint_effort_standard_nearest(
+    const ariane4_free_real_t q[ARIANE4_FREE_N_JOINTS],
+    const ariane4_free_real_t dq[ARIANE4_FREE_N_JOINTS],
+    const ariane4_free_real_t ddq[ARIANE4_FREE_N_JOINTS],
+    const ariane4_free_real_t parameters[ARIANE4_FREE_N_STANDARD_PARAMETERS],
+    ariane4_free_real_t out[ARIANE4_FREE_N_JOINTS])
+{
+    ariane4_free_real_t nearest[ARIANE4_FREE_N_JOINTS];
+    const ariane4_free_status_t beyond = ariane4_free_onto_strokes(q, nearest);
+    return beyond | ariane4_free_joint_effort_standard(nearest, dq, ddq, parameters, out);
+}
+
+/** ariane4_free_motor_from_joint at the nearest point of the strokes. */
+static inline ariane4_free_status_t ariane4_free_motor_from_joint_nearest(
+    const ariane4_free_real_t q[ARIANE4_FREE_N_JOINTS],
+    const ariane4_free_real_t dq[ARIANE4_FREE_N_JOINTS],
+    const ariane4_free_real_t ddq[ARIANE4_FREE_N_JOINTS],
+    ariane4_free_real_t q_m[ARIANE4_FREE_N_JOINTS],
+    ariane4_free_real_t dq_m[ARIANE4_FREE_N_JOINTS],
+    ariane4_free_real_t ddq_m[ARIANE4_FREE_N_JOINTS])
+{
+    ariane4_free_real_t nearest[ARIANE4_FREE_N_JOINTS];
+    const ariane4_free_status_t beyond = ariane4_free_onto_strokes(q, nearest);
+    return beyond | ariane4_free_motor_from_joint(nearest, dq, ddq, q_m, dq_m, ddq_m);
+}
+
+/** ariane4_free_joint_from_motor at the nearest point of the strokes. */
+static inline ariane4_free_status_t ariane4_free_joint_from_motor_nearest(
+    const ariane4_free_real_t q_m[ARIANE4_FREE_N_JOINTS],
+    const ariane4_free_real_t dq_m[ARIANE4_FREE_N_JOINTS],
+    const ariane4_free_real_t ddq_m[ARIANE4_FREE_N_JOINTS],
+    ariane4_free_real_t q[ARIANE4_FREE_N_JOINTS],
+    ariane4_free_real_t dq[ARIANE4_FREE_N_JOINTS],
+    ariane4_free_real_t ddq[ARIANE4_FREE_N_JOINTS])
+{
+    ariane4_free_real_t nearest[ARIANE4_FREE_N_JOINTS];
+    const ariane4_free_status_t beyond = ariane4_free_motors_onto_strokes(q_m, nearest);
+    return beyond | ariane4_free_joint_from_motor(nearest, dq_m, ddq_m, q, dq, ddq);
+}
+
+/** ariane4_free_drive_gain at the nearest point of the strokes. */
+static inline ariane4_free_status_t ariane4_free_drive_gain_nearest(
+    const ariane4_free_real_t q[ARIANE4_FREE_N_JOINTS],
+    ariane4_free_real_t out[ARIANE4_FREE_N_JOINTS])
+{
+    ariane4_free_real_t nearest[ARIANE4_FREE_N_JOINTS];
+    const ariane4_free_status_t beyond = ariane4_free_onto_strokes(q, nearest);
+    return beyond | ariane4_free_drive_gain(nearest, out);
+}
+
+/** ariane4_free_inverse_dynamics_derivatives at the nearest point of the strokes. */
+static inline ariane4_free_status_t ariane4_free_inverse_dynamics_derivatives_nearest(
+    const ariane4_free_real_t q[ARIANE4_FREE_N_JOINTS],
+    const ariane4_free_real_t dq[ARIANE4_FREE_N_JOINTS],
+    const ariane4_free_real_t ddq[ARIANE4_FREE_N_JOINTS],
+    const ariane4_free_real_t parameters[ARIANE4_FREE_N_PARAMETERS],
+    ariane4_free_real_t input[ARIANE4_FREE_N_JOINTS],
+    ariane4_free_real_t input_by_q[ARIANE4_FREE_N_JOINTS * ARIANE4_FREE_N_JOINTS],
+    ariane4_free_real_t input_by_dq[ARIANE4_FREE_N_JOINTS * ARIANE4_FREE_N_JOINTS],
+    ariane4_free_real_t input_by_ddq[ARIANE4_FREE_N_JOINTS * ARIANE4_FREE_N_JOINTS])
+{
+    ariane4_free_real_t nearest[ARIANE4_FREE_N_JOINTS];
+    const ariane4_free_status_t beyond = ariane4_free_onto_strokes(q, nearest);
+    return beyond | ariane4_free_inverse_dynamics_derivatives(nearest, dq, ddq, parameters, input, input_by_q,
+        input_by_dq, input_by_ddq);
+}
+
+/** ariane4_free_forward_dynamics_derivatives at the nearest point of the strokes. */
+static inline ariane4_free_status_t ariane4_free_forward_dynamics_derivatives_nearest(
+    const ariane4_free_real_t q[ARIANE4_FREE_N_JOINTS],
+    const ariane4_free_real_t dq[ARIANE4_FREE_N_JOINTS],
+    const ariane4_free_real_t input[ARIANE4_FREE_N_JOINTS],
+    const ariane4_free_real_t parameters[ARIANE4_FREE_N_PARAMETERS],
+    ariane4_free_real_t ddq[ARIANE4_FREE_N_JOINTS],
+    ariane4_free_real_t ddq_by_q[ARIANE4_FREE_N_JOINTS * ARIANE4_FREE_N_JOINTS],
+    ariane4_free_real_t ddq_by_dq[ARIANE4_FREE_N_JOINTS * ARIANE4_FREE_N_JOINTS],
+    ariane4_free_real_t ddq_by_input[ARIANE4_FREE_N_JOINTS * ARIANE4_FREE_N_JOINTS])
+{
+    ariane4_free_real_t nearest[ARIANE4_FREE_N_JOINTS];
+    const ariane4_free_status_t beyond = ariane4_free_onto_strokes(q, nearest);
+    return beyond | ariane4_free_forward_dynamics_derivatives(nearest, dq, input, parameters, ddq, ddq_by_q,
+        ddq_by_dq, ddq_by_input);
+}
+
+/** ariane4_free_inverse_dynamics_derivatives_standard at the nearest point of the strokes. */
+static inline ariane4_free_status_t ariane4_free_inverse_dynamics_derivatives_standard_nearest(
+    const ariane4_free_real_t q[ARIANE4_FREE_N_JOINTS],
+    const ariane4_free_real_t dq[ARIANE4_FREE_N_JOINTS],
+    const ariane4_free_real_t ddq[ARIANE4_FREE_N_JOINTS],
+    const ariane4_free_real_t parameters[ARIANE4_FREE_N_STANDARD_PARAMETERS],
+    ariane4_free_real_t input[ARIANE4_FREE_N_JOINTS],
+    ariane4_free_real_t input_by_q[ARIANE4_FREE_N_JOINTS * ARIANE4_FREE_N_JOINTS],
+    ariane4_free_real_t input_by_dq[ARIANE4_FREE_N_JOINTS * ARIANE4_FREE_N_JOINTS],
+    ariane4_free_real_t input_by_ddq[ARIANE4_FREE_N_JOINTS * ARIANE4_FREE_N_JOINTS])
+{
+    ariane4_free_real_t nearest[ARIANE4_FREE_N_JOINTS];
+    const ariane4_free_status_t beyond = ariane4_free_onto_strokes(q, nearest);
+    return beyond | ariane4_free_inverse_dynamics_derivatives_standard(nearest, dq, ddq, parameters, input,
+        input_by_q, input_by_dq, input_by_ddq);
+}
+
+/** ariane4_free_forward_dynamics_derivatives_standard at the nearest point of the strokes. */
+static inline ariane4_free_status_t ariane4_free_forward_dynamics_derivatives_standard_nearest(
+    const ariane4_free_real_t q[ARIANE4_FREE_N_JOINTS],
+    const ariane4_free_real_t dq[ARIANE4_FREE_N_JOINTS],
+    const ariane4_free_real_t input[ARIANE4_FREE_N_JOINTS],
+    const ariane4_free_real_t parameters[ARIANE4_FREE_N_STANDARD_PARAMETERS],
+    ariane4_free_real_t ddq[ARIANE4_FREE_N_JOINTS],
+    ariane4_free_real_t ddq_by_q[ARIANE4_FREE_N_JOINTS * ARIANE4_FREE_N_JOINTS],
+    ariane4_free_real_t ddq_by_dq[ARIANE4_FREE_N_JOINTS * ARIANE4_FREE_N_JOINTS],
+    ariane4_free_real_t ddq_by_input[ARIANE4_FREE_N_JOINTS * ARIANE4_FREE_N_JOINTS])
+{
+    ariane4_free_real_t nearest[ARIANE4_FREE_N_JOINTS];
+    const ariane4_free_status_t beyond = ariane4_free_onto_strokes(q, nearest);
+    return beyond | ariane4_free_forward_dynamics_derivatives_standard(nearest, dq, input, parameters, ddq,
+        ddq_by_q, ddq_by_dq, ddq_by_input);
+}
+
+/** ariane4_free_momentum_observer_step at the nearest point of the strokes. */
+static inline ariane4_free_status_t ariane4_free_momentum_observer_step_nearest(
+    const ariane4_free_real_t q[ARIANE4_FREE_N_JOINTS],
+    const ariane4_free_real_t dq[ARIANE4_FREE_N_JOINTS],
+    const ariane4_free_real_t input[ARIANE4_FREE_N_JOINTS],
+    const ariane4_free_real_t dt[1],
+    const ariane4_free_real_t gain[ARIANE4_FREE_N_JOINTS],
+    const ariane4_free_real_t parameters[ARIANE4_FREE_N_PARAMETERS],
+    const ariane4_free_real_t state[ARIANE4_FREE_N_OBSERVER_STATES],
+    ariane4_free_real_t state_next[ARIANE4_FREE_N_OBSERVER_STATES],
+    ariane4_free_real_t external[ARIANE4_FREE_N_JOINTS])
+{
+    ariane4_free_real_t nearest[ARIANE4_FREE_N_JOINTS];
+    const ariane4_free_status_t beyond = ariane4_free_onto_strokes(q, nearest);
+    return beyond | ariane4_free_momentum_observer_step(nearest, dq, input, dt, gain, parameters, state,
+        state_next, external);
+}
+
+/** ariane4_free_momentum_observer_step_standard at the nearest point of the strokes. */
+static inline ariane4_free_status_t ariane4_free_momentum_observer_step_standard_nearest(
+    const ariane4_free_real_t q[ARIANE4_FREE_N_JOINTS],
+    const ariane4_free_real_t dq[ARIANE4_FREE_N_JOINTS],
+    const ariane4_free_real_t input[ARIANE4_FREE_N_JOINTS],
+    const ariane4_free_real_t dt[1],
+    const ariane4_free_real_t gain[ARIANE4_FREE_N_JOINTS],
+    const ariane4_free_real_t parameters[ARIANE4_FREE_N_STANDARD_PARAMETERS],
+    const ariane4_free_real_t state[ARIANE4_FREE_N_OBSERVER_STATES],
+    ariane4_free_real_t state_next[ARIANE4_FREE_N_OBSERVER_STATES],
+    ariane4_free_real_t external[ARIANE4_FREE_N_JOINTS])
+{
+    ariane4_free_real_t nearest[ARIANE4_FREE_N_JOINTS];
+    const ariane4_free_status_t beyond = ariane4_free_onto_strokes(q, nearest);
+    return beyond | ariane4_free_momentum_observer_step_standard(nearest, dq, input, dt, gain, parameters,
+        state, state_next, external);
+}
 
 #ifdef __cplusplus
 }

@@ -6,7 +6,7 @@
  * Arm ariane4_free, description 79391f27012d8ce4.
  * SPDX-License-Identifier: 0BSD
  *
- * Operations: 338 (206 mul, 132 add, 0 neg), 6 div, 3 sqrt, 8 trig, 4 other.
+ * Operations: 338 (206 mul, 132 add, 0 neg), 6 div, 3 sqrt, 8 trig, 4 other calls (sign, select and the like).
  *
  * @param[in]   q           [4]   [rad]    joint coordinates; norm at most 10000
  * @param[in]   dq          [4]   [rad/s]  joint velocities; norm at most 100000
@@ -59,11 +59,11 @@
  */
 #include "ariane4_free_private.h"
 
-#if ARIANE4_FREE_GENERATION != 0x261051E4UL
+#if ARIANE4_FREE_GENERATION != 0x6EBE5535UL
 #error "ariane4_free.h and ariane4_free_bias.c are of different generations: generate the arm again"
 #endif
 
-int ariane4_free_bias(
+ariane4_free_status_t ariane4_free_bias(
     const ariane4_free_real_t q[ARIANE4_FREE_N_JOINTS],
     const ariane4_free_real_t dq[ARIANE4_FREE_N_JOINTS],
     const ariane4_free_real_t parameters[ARIANE4_FREE_N_PARAMETERS],
@@ -71,7 +71,7 @@ int ariane4_free_bias(
 {
     enum { ZZ1R = 0, XX2R, XY2, XZ2R, YZ2, ZZ2R, MX2R, MY2, XX3R, XY3R, XZ3, YZ3, ZZ3R, MX3R, MY3R, XX4R, XY4,
         XZ4R, YZ4R, ZZ4, MX4, MY4, FV1, FC1, IA1, FV2, FC2, IA2, FV3, FC3, IA3, FV4, FC4, IA4 };
-    int status = ARIANE4_FREE_STATUS_OK;
+    ariane4_free_status_t status = ARIANE4_FREE_STATUS_OK;
 
     if (!ariane4_free_within_joints(q, ARIANE4_FREE_C(1.0e8))
         || !ariane4_free_within_joints(dq, ARIANE4_FREE_C(1.0e10))
@@ -96,14 +96,14 @@ int ariane4_free_bias(
     ARIANE4_FREE_SINCOS(q[2], &t5, &t2);
     ariane4_free_real_t t9, t13;
     ARIANE4_FREE_SINCOS(q[3], &t9, &t13);
-    const ariane4_free_real_t t1 = t0 * dq[0];
+    const ariane4_free_real_t t1 = t0 * dq[0]; /* link j2: motion */
     const ariane4_free_real_t t4 = t3 * dq[0];
-    const ariane4_free_real_t t6 = t2 * t1 + t5 * t4;
+    const ariane4_free_real_t t6 = t2 * t1 + t5 * t4; /* link j3: motion */
     const ariane4_free_real_t t7 = t2 * t4 - t5 * t1;
     const ariane4_free_real_t t8 = t6 * t7;
     const ariane4_free_real_t t10 = dq[1] + dq[2];
     const ariane4_free_real_t t11 = t7 * t10;
-    const ariane4_free_real_t t12 = ARIANE4_FREE_C(2.0) * t11;
+    const ariane4_free_real_t t12 = ARIANE4_FREE_C(2.0) * t11; /* link j4: motion */
     const ariane4_free_real_t t14 = t9 * t8 + t13 * t12;
     const ariane4_free_real_t t15 = t9 * t6 + t13 * t10;
     const ariane4_free_real_t t16 = dq[3] + t7;
@@ -112,72 +112,87 @@ int ariane4_free_bias(
     const ariane4_free_real_t t19 = t9 * t12 - t13 * t8;
     const ariane4_free_real_t t20 = t13 * t6 - t9 * t10;
     const ariane4_free_real_t t21 = t20 * t16;
-    const ariane4_free_real_t t22 = t21 + (t19 + t21);
-    const ariane4_free_real_t t23 = t20 * t15;
-    const ariane4_free_real_t t24 = t6 * t10;
-    const ariane4_free_real_t t25 = t24 + t23;
+    const ariane4_free_real_t t22 = t21 + (t19 + t21); /* link j4: force and moment */
+    const ariane4_free_real_t t23 = t20 * t15; /* link j4: motion */
+    const ariane4_free_real_t t24 = t6 * t10; /* link j3: motion */
+    const ariane4_free_real_t t25 = t24 + t23; /* link j4: force and moment */
     const ariane4_free_real_t t26 = parameters[ZZ4] * t17 - parameters[XX4R] * t18 + parameters[XY4] * t22
         + parameters[XZ4R] * t25;
-    const ariane4_free_real_t t27 = t15 * t15;
+    const ariane4_free_real_t t27 = t15 * t15; /* link j4: motion */
     const ariane4_free_real_t t28 = t16 * t16;
     const ariane4_free_real_t t29 = dq[0] * dq[0];
-    const ariane4_free_real_t t30 = ARIANE4_FREE_C(0.116) * t29;
+    const ariane4_free_real_t t30 = ARIANE4_FREE_C(0.116) * t29; /* link j2: motion */
     const ariane4_free_real_t t31 = t3 * t30 + ARIANE4_FREE_C(-9.81) * t0;
     const ariane4_free_real_t t32 = t4 * t4;
     const ariane4_free_real_t t33 = dq[1] * dq[1];
-    const ariane4_free_real_t t34 = t31 + ARIANE4_FREE_C(0.443) * (t33 + t32);
-    const ariane4_free_real_t t35 = ARIANE4_FREE_C(-9.81) * t3 - t0 * t30;
+    const ariane4_free_real_t t34 = t31 + ARIANE4_FREE_C(0.443) * (t33 + t32); /* link j3: motion */
+    const ariane4_free_real_t t35 = ARIANE4_FREE_C(-9.81) * t3 - t0 * t30; /* link j2: motion */
     const ariane4_free_real_t t36 = t1 * t4;
-    const ariane4_free_real_t t37 = t35 + ARIANE4_FREE_C(-0.443) * t36;
+    const ariane4_free_real_t t37 = t35 + ARIANE4_FREE_C(-0.443) * t36; /* link j3: motion */
     const ariane4_free_real_t t38 = t2 * t37 - t5 * t34;
-    const ariane4_free_real_t t39 = t38 + ARIANE4_FREE_C(0.1) * t8;
+    const ariane4_free_real_t t39 = t38 + ARIANE4_FREE_C(0.1) * t8; /* link j4: motion */
+    /* link j4: force and moment */
     const ariane4_free_real_t t40 = t26 + parameters[YZ4R] * (t28 - t27) + parameters[MY4] * t39;
     const ariane4_free_real_t t41 = t18 - t17;
     const ariane4_free_real_t t42 = t24 - t23;
     const ariane4_free_real_t t43 = t21 * (parameters[XX4R] - parameters[ZZ4]) + parameters[XY4] * t41
         - parameters[YZ4R] * t42;
-    const ariane4_free_real_t t44 = t20 * t20;
+    const ariane4_free_real_t t44 = t20 * t20; /* link j4: motion */
+    /* link j4: force and moment */
     const ariane4_free_real_t t45 = t43 - parameters[XZ4R] * (t44 - t28) + parameters[MX4] * t39;
-    const ariane4_free_real_t t46 = ARIANE4_FREE_C(2.0) * t24;
+    const ariane4_free_real_t t46 = ARIANE4_FREE_C(2.0) * t24; /* link j4: motion */
+    /* link j3: force and moment */
     const ariane4_free_real_t t47 = parameters[XY3R] * t46 - (parameters[XX3R] * t11 + parameters[ZZ3R] * t11)
         - parameters[XZ3] * t8;
-    const ariane4_free_real_t t48 = t7 * t7;
+    const ariane4_free_real_t t48 = t7 * t7; /* link j3: motion */
     const ariane4_free_real_t t49 = t10 * t10;
-    const ariane4_free_real_t t50 = dq[1] * t1;
-    const ariane4_free_real_t t51 = ARIANE4_FREE_C(-0.886) * t50;
+    const ariane4_free_real_t t50 = dq[1] * t1; /* link j2: motion */
+    const ariane4_free_real_t t51 = ARIANE4_FREE_C(-0.886) * t50; /* link j3: motion */
+    /* link j4: what it passes on */
     const ariane4_free_real_t t52 = t47 + parameters[YZ3] * (t49 - t48) + parameters[MY3R] * t51 + (t13 * t40
         + t9 * t45);
+    /* link j4: force and moment */
     const ariane4_free_real_t t53 = parameters[XX4R] * t23 - parameters[ZZ4] * t24 - parameters[YZ4R] * t19
         + parameters[XZ4R] * t14;
-    const ariane4_free_real_t t54 = t2 * t34 + t5 * t37;
-    const ariane4_free_real_t t55 = t48 + t49;
+    const ariane4_free_real_t t54 = t2 * t34 + t5 * t37; /* link j3: motion */
+    const ariane4_free_real_t t55 = t48 + t49; /* link j4: motion */
     const ariane4_free_real_t t56 = t54 + ARIANE4_FREE_C(-0.1) * t55;
     const ariane4_free_real_t t57 = t51 + ARIANE4_FREE_C(0.2) * t24;
+    /* link j4: force and moment */
     const ariane4_free_real_t t58 = parameters[MX4] * (t9 * t56 + t13 * t57) + parameters[MY4] * (t13 * t56
         - t9 * t57);
     const ariane4_free_real_t t59 = t53 + parameters[XY4] * (t44 - t27) + t58;
     const ariane4_free_real_t t60 = parameters[MX4] * (t27 + t28) - parameters[MY4] * t42;
     const ariane4_free_real_t t61 = parameters[MX4] * t25 + parameters[MY4] * (t44 + t28);
-    const ariane4_free_real_t t62 = t9 * t60 + t13 * t61;
+    const ariane4_free_real_t t62 = t9 * t60 + t13 * t61; /* link j4: what it passes on */
+    /* link j3: force and moment */
     const ariane4_free_real_t t63 = t24 * (parameters[XX3R] - parameters[ZZ3R]) + parameters[XY3R] * t12
         - parameters[YZ3] * t8;
-    const ariane4_free_real_t t64 = t6 * t6;
+    const ariane4_free_real_t t64 = t6 * t6; /* link j3: motion */
+    /* link j4: what it passes on */
     const ariane4_free_real_t t65 = t63 - parameters[XZ3] * (t64 - t49) + parameters[MX3R] * t51 + (t59
         + ARIANE4_FREE_C(0.1) * t62);
-    const ariane4_free_real_t t66 = dq[1] * t4;
+    const ariane4_free_real_t t66 = dq[1] * t4; /* link j2: motion */
     const ariane4_free_real_t t67 = ARIANE4_FREE_C(2.0) * t50;
+    /* link j2: force and moment */
     const ariane4_free_real_t t68 = parameters[XY2] * t67 - (parameters[XX2R] * t66 + parameters[ZZ2R] * t66)
         - parameters[XZ2R] * t36;
+    /* link j3: what it passes on */
     const ariane4_free_real_t t69 = t68 + parameters[YZ2] * (t33 - t32) + (t2 * t52 + t5 * t65);
+    /* link j4: what it passes on */
     const ariane4_free_real_t t70 = parameters[MX3R] * t46 + parameters[MY3R] * t12 + t62;
-    const ariane4_free_real_t t71 = ARIANE4_FREE_C(2.0) * t66;
+    const ariane4_free_real_t t71 = ARIANE4_FREE_C(2.0) * t66; /* link j2: motion */
+    /* link j2: force and moment */
     const ariane4_free_real_t t72 = t50 * (parameters[ZZ2R] - parameters[XX2R]) - parameters[XY2] * t71
         + parameters[YZ2] * t36;
-    const ariane4_free_real_t t73 = t1 * t1;
+    const ariane4_free_real_t t73 = t1 * t1; /* link j2: motion */
+    /* link j3: what it passes on */
     const ariane4_free_real_t t74 = t72 + parameters[XZ2R] * (t73 - t33) + (t5 * t52 - t2 * t65
         + ARIANE4_FREE_C(0.443) * t70);
+    /* link j2: what it passes on */
     const ariane4_free_real_t t75 = t0 * t69 + t3 * t74 + ARIANE4_FREE_C(0.116) * (parameters[MX2R] * t67
         + parameters[MY2] * t71 + t70);
+    /* joint j1: drive */
     const ariane4_free_real_t t78 = ARIANE4_FREE_C(0.28217402066925895) * t76
         + ARIANE4_FREE_C(0.9593632378089879) * t77;
     const ariane4_free_real_t t79 = ARIANE4_FREE_SQRT(ARIANE4_FREE_C(0.037468) * t78
@@ -187,20 +202,27 @@ int ariane4_free_bias(
     const ariane4_free_real_t t81 = ARIANE4_FREE_C(-0.06434139546481742) * t79 / t80;
     const ariane4_free_real_t t82 = ARIANE4_FREE_C(-1.0) / t79;
     const ariane4_free_real_t t83 = t80 * (ARIANE4_FREE_C(3885.523436256565) * t82) * dq[0];
-    const ariane4_free_real_t t84 = ariane4_free_sign(t83);
+    const ariane4_free_real_t t84 = ariane4_free_sign(t83); /* joint j1: coulomb_friction */
+    /* joint j1: drive */
     const ariane4_free_real_t t85 = ARIANE4_FREE_C(-3885.523436256565) * t78
         + ARIANE4_FREE_C(-72.7913960548305) * (t82 * t82) * (t80 * t80);
     const ariane4_free_real_t t86 = parameters[FV1] * t83 + parameters[FC1] * t84
         + parameters[IA1] * (t82 * t85 * t29);
     out[0] = ARIANE4_FREE_C(-250.0) * t86 + t81 * t75;
+    /* link j4: force and moment */
     const ariane4_free_real_t t87 = parameters[MX4] * t22 + parameters[MY4] * t41;
+    /* link j3: force and moment */
     const ariane4_free_real_t t88 = parameters[XY3R] * (t64 - t48) - parameters[XX3R] * t8
         + (parameters[MY3R] * t54 - parameters[MX3R] * t38);
+    /* link j4: what it passes on */
     const ariane4_free_real_t t89 = t88 + (t9 * t40 - t13 * t45 + ARIANE4_FREE_C(-0.1) * t87);
     const ariane4_free_real_t t90 = parameters[MY3R] * t8 - parameters[MX3R] * t55 + (t9 * t61 - t13 * t60);
+    /* link j3: what it passes on */
     const ariane4_free_real_t t91 = t2 * (parameters[MX3R] * t8 - parameters[MY3R] * (t64 + t49) + t87);
+    /* link j2: force and moment */
     const ariane4_free_real_t t92 = parameters[XY2] * (t73 - t32) - parameters[XX2R] * t36
         + (parameters[MY2] * t31 - parameters[MX2R] * t35);
+    /* joint j2: drive */
     const ariane4_free_real_t t93 = ARIANE4_FREE_C(0.8305958991958126) * t3
         - ARIANE4_FREE_C(0.5568756164881881) * t0;
     const ariane4_free_real_t t94 = ARIANE4_FREE_SQRT(ARIANE4_FREE_C(-0.078402) * t93
@@ -211,12 +233,14 @@ int ariane4_free_bias(
     const ariane4_free_real_t t97 = t96 * (t92 + (t89 + ARIANE4_FREE_C(0.443) * (t5 * t90 + t91)));
     const ariane4_free_real_t t98 = ARIANE4_FREE_C(1.0) / t94;
     const ariane4_free_real_t t99 = t95 * (ARIANE4_FREE_C(2656.3065671641784) * t98) * dq[1];
-    const ariane4_free_real_t t100 = ariane4_free_sign(t99);
+    const ariane4_free_real_t t100 = ariane4_free_sign(t99); /* joint j2: coulomb_friction */
+    /* joint j2: drive */
     const ariane4_free_real_t t101 = ARIANE4_FREE_C(2656.3065671641784) * t93
         + ARIANE4_FREE_C(-104.12987373940295) * (t98 * t98) * (t95 * t95);
     const ariane4_free_real_t t102 = parameters[IA2] * (t98 * t101 * t33) - (parameters[FV2] * t99
         + parameters[FC2] * t100);
     out[1] = ARIANE4_FREE_C(83.33333333333333) * t102 + t97;
+    /* joint j3: drive */
     const ariane4_free_real_t t103 = ARIANE4_FREE_C(0.06366143813161289) * t2
         - ARIANE4_FREE_C(0.9979715533496006) * t5;
     const ariane4_free_real_t t104 = ARIANE4_FREE_SQRT(ARIANE4_FREE_C(0.052812) * t103
@@ -226,13 +250,14 @@ int ariane4_free_bias(
     const ariane4_free_real_t t106 = ARIANE4_FREE_C(-0.046787723832235825) * t104 / t105;
     const ariane4_free_real_t t107 = ARIANE4_FREE_C(-1.0) / t104;
     const ariane4_free_real_t t108 = t105 * (ARIANE4_FREE_C(7124.375926654358) * t107) * dq[2];
-    const ariane4_free_real_t t109 = ariane4_free_sign(t108);
+    const ariane4_free_real_t t109 = ariane4_free_sign(t108); /* joint j3: coulomb_friction */
+    /* joint j3: drive */
     const ariane4_free_real_t t110 = ARIANE4_FREE_C(-7124.375926654358) * t103
         + ARIANE4_FREE_C(-188.12627071923498) * (t107 * t107) * (t105 * t105);
     const ariane4_free_real_t t111 = parameters[FV3] * t108 + parameters[FC3] * t109
         + parameters[IA3] * (t107 * t110 * (dq[2] * dq[2]));
     out[2] = ARIANE4_FREE_C(-333.3333333333333) * t111 - t106 * t89;
-    const ariane4_free_real_t t112 = ariane4_free_sign(dq[3]);
+    const ariane4_free_real_t t112 = ariane4_free_sign(dq[3]); /* joint j4: coulomb_friction */
     const ariane4_free_real_t t113 = ARIANE4_FREE_C(20.0) * (parameters[FV4] * (ARIANE4_FREE_C(1.0e2) * dq[3])
         + parameters[FC4] * t112) + ARIANE4_FREE_C(0.2) * t59;
     out[3] = t113;

@@ -6,7 +6,7 @@
  * Arm ariane4_free, description 79391f27012d8ce4.
  * SPDX-License-Identifier: 0BSD
  *
- * Operations: 397 (231 mul, 166 add, 0 neg), 6 div, 3 sqrt, 8 trig, 4 other.
+ * Operations: 397 (231 mul, 166 add, 0 neg), 6 div, 3 sqrt, 8 trig, 4 other calls (sign, select and the like).
  *
  * @param[in]   q           [4]   [rad]    joint coordinates; norm at most 10000
  * @param[in]   dq          [4]   [rad/s]  joint velocities; norm at most 100000
@@ -77,11 +77,11 @@
  */
 #include "ariane4_free_private.h"
 
-#if ARIANE4_FREE_GENERATION != 0x261051E4UL
+#if ARIANE4_FREE_GENERATION != 0x6EBE5535UL
 #error "ariane4_free.h and ariane4_free_bias_standard.c are of different generations: generate the arm again"
 #endif
 
-int ariane4_free_bias_standard(
+ariane4_free_status_t ariane4_free_bias_standard(
     const ariane4_free_real_t q[ARIANE4_FREE_N_JOINTS],
     const ariane4_free_real_t dq[ARIANE4_FREE_N_JOINTS],
     const ariane4_free_real_t parameters[ARIANE4_FREE_N_STANDARD_PARAMETERS],
@@ -90,7 +90,7 @@ int ariane4_free_bias_standard(
     enum { XX1 = 0, XY1, XZ1, YY1, YZ1, ZZ1, MX1, MY1, MZ1, M1, XX2, XY2, XZ2, YY2, YZ2, ZZ2, MX2, MY2, MZ2,
         M2, XX3, XY3, XZ3, YY3, YZ3, ZZ3, MX3, MY3, MZ3, M3, XX4, XY4, XZ4, YY4, YZ4, ZZ4, MX4, MY4, MZ4, M4,
         FV1, FC1, IA1, FV2, FC2, IA2, FV3, FC3, IA3, FV4, FC4, IA4 };
-    int status = ARIANE4_FREE_STATUS_OK;
+    ariane4_free_status_t status = ARIANE4_FREE_STATUS_OK;
 
     if (!ariane4_free_within_joints(q, ARIANE4_FREE_C(1.0e8))
         || !ariane4_free_within_joints(dq, ARIANE4_FREE_C(1.0e10))
@@ -115,17 +115,17 @@ int ariane4_free_bias_standard(
     ARIANE4_FREE_SINCOS(q[2], &t9, &t14);
     ariane4_free_real_t t28, t34;
     ARIANE4_FREE_SINCOS(q[3], &t28, &t34);
-    const ariane4_free_real_t t0 = dq[0] * dq[0];
-    const ariane4_free_real_t t1 = ARIANE4_FREE_C(0.116) * t0;
+    const ariane4_free_real_t t0 = dq[0] * dq[0]; /* link j1: motion */
+    const ariane4_free_real_t t1 = ARIANE4_FREE_C(0.116) * t0; /* link j2: motion */
     const ariane4_free_real_t t4 = t2 * t1 + ARIANE4_FREE_C(-9.81) * t3;
     const ariane4_free_real_t t5 = t2 * dq[0];
     const ariane4_free_real_t t6 = t5 * t5;
     const ariane4_free_real_t t7 = dq[1] * dq[1];
-    const ariane4_free_real_t t8 = t4 + ARIANE4_FREE_C(0.443) * (t6 + t7);
-    const ariane4_free_real_t t10 = t3 * t1 + ARIANE4_FREE_C(9.81) * t2;
+    const ariane4_free_real_t t8 = t4 + ARIANE4_FREE_C(0.443) * (t6 + t7); /* link j3: motion */
+    const ariane4_free_real_t t10 = t3 * t1 + ARIANE4_FREE_C(9.81) * t2; /* link j2: motion */
     const ariane4_free_real_t t11 = t3 * dq[0];
     const ariane4_free_real_t t12 = t11 * t5;
-    const ariane4_free_real_t t13 = t10 + ARIANE4_FREE_C(0.443) * t12;
+    const ariane4_free_real_t t13 = t10 + ARIANE4_FREE_C(0.443) * t12; /* link j3: motion */
     const ariane4_free_real_t t15 = t9 * t8 + t14 * t13;
     const ariane4_free_real_t t16 = t14 * t11 + t9 * t5;
     const ariane4_free_real_t t17 = t14 * t5 - t9 * t11;
@@ -133,16 +133,17 @@ int ariane4_free_bias_standard(
     const ariane4_free_real_t t19 = t16 * t16;
     const ariane4_free_real_t t20 = dq[1] + dq[2];
     const ariane4_free_real_t t21 = t20 * t20;
-    const ariane4_free_real_t t22 = t21 + t19;
+    const ariane4_free_real_t t22 = t21 + t19; /* link j4: motion */
     const ariane4_free_real_t t23 = t15 + (ARIANE4_FREE_C(-0.1) * t18 - ARIANE4_FREE_C(0.436) * t22);
-    const ariane4_free_real_t t24 = t14 * t8 - t9 * t13;
+    const ariane4_free_real_t t24 = t14 * t8 - t9 * t13; /* link j3: motion */
     const ariane4_free_real_t t25 = t17 * t17;
-    const ariane4_free_real_t t26 = t21 + t25;
+    const ariane4_free_real_t t26 = t21 + t25; /* link j4: motion */
     const ariane4_free_real_t t27 = t24 + (ARIANE4_FREE_C(-0.1) * t26 + ARIANE4_FREE_C(-0.436) * t18);
-    const ariane4_free_real_t t29 = t20 * t16;
+    const ariane4_free_real_t t29 = t20 * t16; /* link j3: motion */
     const ariane4_free_real_t t30 = t20 * t17;
-    const ariane4_free_real_t t31 = dq[1] * t11;
-    const ariane4_free_real_t t32 = ARIANE4_FREE_C(0.886) * t31;
+    const ariane4_free_real_t t31 = dq[1] * t11; /* link j2: motion */
+    const ariane4_free_real_t t32 = ARIANE4_FREE_C(0.886) * t31; /* link j3: motion */
+    /* link j4: motion */
     const ariane4_free_real_t t33 = t32 - (ARIANE4_FREE_C(0.2) * t29 + ARIANE4_FREE_C(-0.872) * t30);
     const ariane4_free_real_t t35 = t28 * t27 - t34 * t33;
     const ariane4_free_real_t t36 = ARIANE4_FREE_C(2.0) * t30;
@@ -155,21 +156,23 @@ int ariane4_free_bias_standard(
     const ariane4_free_real_t t43 = t28 * t20 - t34 * t16;
     const ariane4_free_real_t t44 = t43 * t39;
     const ariane4_free_real_t t45 = t42 - t44;
-    const ariane4_free_real_t t46 = t45 - t44;
+    const ariane4_free_real_t t46 = t45 - t44; /* link j4: force and moment */
     const ariane4_free_real_t t47 = t40 * (parameters[ZZ4] - parameters[YY4]) - parameters[XX4] * t41
         + parameters[XY4] * t46;
-    const ariane4_free_real_t t48 = t43 * t38;
-    const ariane4_free_real_t t49 = t29 - t48;
-    const ariane4_free_real_t t50 = t38 * t38;
+    const ariane4_free_real_t t48 = t43 * t38; /* link j4: motion */
+    const ariane4_free_real_t t49 = t29 - t48; /* link j4: force and moment */
+    const ariane4_free_real_t t50 = t38 * t38; /* link j4: motion */
     const ariane4_free_real_t t51 = t39 * t39;
+    /* link j4: force and moment */
     const ariane4_free_real_t t52 = t47 + parameters[XZ4] * t49 + parameters[YZ4] * (t51 - t50)
         + (parameters[MZ4] * t35 - parameters[MY4] * t23);
-    const ariane4_free_real_t t53 = t34 * t27 + t28 * t33;
-    const ariane4_free_real_t t54 = t41 - t40;
+    const ariane4_free_real_t t53 = t34 * t27 + t28 * t33; /* link j4: motion */
+    const ariane4_free_real_t t54 = t41 - t40; /* link j4: force and moment */
     const ariane4_free_real_t t55 = parameters[YY4] * t45 + t44 * (parameters[XX4] - parameters[ZZ4])
         - parameters[XY4] * t54;
     const ariane4_free_real_t t56 = t29 + t48;
-    const ariane4_free_real_t t57 = t43 * t43;
+    const ariane4_free_real_t t57 = t43 * t43; /* link j4: motion */
+    /* link j4: force and moment */
     const ariane4_free_real_t t58 = t55 + parameters[YZ4] * t56 + parameters[XZ4] * (t57 - t51)
         + (parameters[MZ4] * t53 + parameters[MX4] * t23);
     const ariane4_free_real_t t59 = parameters[MX4] * (t50 + t51) - parameters[MY4] * t56
@@ -178,41 +181,53 @@ int ariane4_free_bias_standard(
     const ariane4_free_real_t t61 = parameters[MX4] * t49 + parameters[MY4] * (t57 + t51)
         + parameters[MZ4] * t37;
     const ariane4_free_real_t t62 = t61 - parameters[M4] * t35;
-    const ariane4_free_real_t t63 = t28 * t60 + t34 * t62;
-    const ariane4_free_real_t t64 = ARIANE4_FREE_C(2.0) * t29;
+    const ariane4_free_real_t t63 = t28 * t60 + t34 * t62; /* link j4: what it passes on */
+    const ariane4_free_real_t t64 = ARIANE4_FREE_C(2.0) * t29; /* link j4: motion */
+    /* link j3: force and moment */
     const ariane4_free_real_t t65 = parameters[XY3] * t64 - (parameters[XX3] * t30 + t30 * (parameters[ZZ3]
         - parameters[YY3]));
     const ariane4_free_real_t t66 = t65 - parameters[XZ3] * t18 + parameters[YZ3] * (t21 - t25)
         + (parameters[MZ3] * t15 - parameters[MY3] * t32);
+    /* link j4: what it passes on */
     const ariane4_free_real_t t67 = t66 + (t34 * t52 - t28 * t58 + ARIANE4_FREE_C(-0.436) * t63);
+    /* link j4: force and moment */
     const ariane4_free_real_t t68 = (parameters[YY4] - parameters[XX4]) * t48 - parameters[ZZ4] * t29
         - parameters[YZ4] * t42;
     const ariane4_free_real_t t69 = t68 + parameters[XZ4] * t37 + parameters[XY4] * (t57 - t50)
         + (parameters[MX4] * t35 + parameters[MY4] * t53);
+    /* link j3: force and moment */
     const ariane4_free_real_t t70 = parameters[YY3] * t29 - t29 * (parameters[XX3] - parameters[ZZ3])
         - parameters[XY3] * t36;
     const ariane4_free_real_t t71 = t70 + parameters[YZ3] * t18 - parameters[XZ3] * (t21 - t19)
         + (parameters[MZ3] * t24 + parameters[MX3] * t32);
-    const ariane4_free_real_t t72 = t71 - (t69 + ARIANE4_FREE_C(0.1) * t63);
-    const ariane4_free_real_t t73 = dq[1] * t5;
+    const ariane4_free_real_t t72 = t71 - (t69 + ARIANE4_FREE_C(0.1) * t63); /* link j4: what it passes on */
+    const ariane4_free_real_t t73 = dq[1] * t5; /* link j2: motion */
     const ariane4_free_real_t t74 = ARIANE4_FREE_C(2.0) * t31;
+    /* link j2: force and moment */
     const ariane4_free_real_t t75 = t73 * (parameters[YY2] - parameters[ZZ2]) - t73 * parameters[XX2]
         + t74 * parameters[XY2];
     const ariane4_free_real_t t76 = t75 - t12 * parameters[XZ2] + (t7 - t6) * parameters[YZ2]
         + t10 * parameters[MZ2];
+    /* link j3: force and moment */
     const ariane4_free_real_t t77 = parameters[MX3] * t64 + parameters[MY3] * t36 - parameters[MZ3] * (t19
         + t25);
-    const ariane4_free_real_t t78 = parameters[M3] * t32 + t77 + t63;
-    const ariane4_free_real_t t79 = ARIANE4_FREE_C(2.0) * t73;
+    const ariane4_free_real_t t78 = parameters[M3] * t32 + t77 + t63; /* link j4: what it passes on */
+    const ariane4_free_real_t t79 = ARIANE4_FREE_C(2.0) * t73; /* link j2: motion */
+    /* link j2: force and moment */
     const ariane4_free_real_t t80 = t31 * parameters[YY2] + t31 * (parameters[ZZ2] - parameters[XX2])
         - t79 * parameters[XY2];
-    const ariane4_free_real_t t81 = t11 * t11;
+    const ariane4_free_real_t t81 = t11 * t11; /* link j2: motion */
+    /* link j2: force and moment */
     const ariane4_free_real_t t82 = t80 + t12 * parameters[YZ2] + (t81 - t7) * parameters[XZ2]
         + t4 * parameters[MZ2];
+    /* link j3: what it passes on */
     const ariane4_free_real_t t83 = t82 + (t9 * t67 + t14 * t72 + ARIANE4_FREE_C(0.443) * t78);
+    /* link j2: what it passes on */
     const ariane4_free_real_t t84 = t3 * (t76 + (t14 * t67 - t9 * t72)) + t2 * t83;
+    /* link j2: force and moment */
     const ariane4_free_real_t t85 = t74 * parameters[MX2] + t79 * parameters[MY2] - (t81
         + t6) * parameters[MZ2];
+    /* joint j1: drive */
     const ariane4_free_real_t t88 = ARIANE4_FREE_C(0.28217402066925895) * t86
         + ARIANE4_FREE_C(0.9593632378089879) * t87;
     const ariane4_free_real_t t89 = ARIANE4_FREE_SQRT(ARIANE4_FREE_C(0.037468) * t88
@@ -222,7 +237,8 @@ int ariane4_free_bias_standard(
     const ariane4_free_real_t t91 = ARIANE4_FREE_C(-0.06434139546481742) * t89 / t90;
     const ariane4_free_real_t t92 = ARIANE4_FREE_C(-1.0) / t89;
     const ariane4_free_real_t t93 = t90 * (ARIANE4_FREE_C(3885.523436256565) * t92) * dq[0];
-    const ariane4_free_real_t t94 = ariane4_free_sign(t93);
+    const ariane4_free_real_t t94 = ariane4_free_sign(t93); /* joint j1: coulomb_friction */
+    /* joint j1: drive */
     const ariane4_free_real_t t95 = ARIANE4_FREE_C(-3885.523436256565) * t88
         + ARIANE4_FREE_C(-72.7913960548305) * (t92 * t92) * (t90 * t90);
     const ariane4_free_real_t t96 = t93 * parameters[FV1] + t94 * parameters[FC1]
@@ -230,22 +246,27 @@ int ariane4_free_bias_standard(
     const ariane4_free_real_t t97 = ARIANE4_FREE_C(-250.0) * t96 + t91 * (t84 + ARIANE4_FREE_C(0.116) * (t85
         + t78));
     out[0] = t97;
+    /* link j4: force and moment */
     const ariane4_free_real_t t98 = parameters[MX4] * t46 + parameters[MY4] * t54 - parameters[MZ4] * (t57
         + t50);
     const ariane4_free_real_t t99 = parameters[M4] * t23 + t98;
-    const ariane4_free_real_t t100 = t28 * t62 - t34 * t60;
+    const ariane4_free_real_t t100 = t28 * t62 - t34 * t60; /* link j4: what it passes on */
     const ariane4_free_real_t t101 = t28 * t52 + t34 * t58 + (ARIANE4_FREE_C(-0.1) * t99
         + ARIANE4_FREE_C(-0.436) * t100);
+    /* link j3: force and moment */
     const ariane4_free_real_t t102 = parameters[XY3] * (t19 - t25) - t18 * (parameters[XX3] - parameters[YY3])
         + (parameters[MX3] * t15 + parameters[MY3] * t24);
-    const ariane4_free_real_t t103 = t102 + t101;
+    const ariane4_free_real_t t103 = t102 + t101; /* link j4: what it passes on */
     const ariane4_free_real_t t104 = parameters[MY3] * t18 - parameters[MX3] * t26 - parameters[M3] * t24
         + t100;
     const ariane4_free_real_t t105 = parameters[M3] * t15 + (parameters[MX3] * t18 - parameters[MY3] * t22)
         + t99;
+    /* link j2: force and moment */
     const ariane4_free_real_t t106 = t12 * (parameters[YY2] - parameters[XX2]) + (t81 - t6) * parameters[XY2]
         + (t10 * parameters[MX2] + t4 * parameters[MY2]);
+    /* link j3: what it passes on */
     const ariane4_free_real_t t107 = t106 + (t103 + ARIANE4_FREE_C(0.443) * (t9 * t104 + t14 * t105));
+    /* joint j2: drive */
     const ariane4_free_real_t t108 = ARIANE4_FREE_C(0.8305958991958126) * t2
         - ARIANE4_FREE_C(0.5568756164881881) * t3;
     const ariane4_free_real_t t109 = ARIANE4_FREE_SQRT(ARIANE4_FREE_C(-0.078402) * t108
@@ -255,12 +276,14 @@ int ariane4_free_bias_standard(
     const ariane4_free_real_t t111 = ARIANE4_FREE_C(-0.03137188092799786) * t109 / t110;
     const ariane4_free_real_t t112 = ARIANE4_FREE_C(1.0) / t109;
     const ariane4_free_real_t t113 = t110 * (ARIANE4_FREE_C(2656.3065671641784) * t112) * dq[1];
-    const ariane4_free_real_t t114 = ariane4_free_sign(t113);
+    const ariane4_free_real_t t114 = ariane4_free_sign(t113); /* joint j2: coulomb_friction */
+    /* joint j2: drive */
     const ariane4_free_real_t t115 = ARIANE4_FREE_C(2656.3065671641784) * t108
         + ARIANE4_FREE_C(-104.12987373940295) * (t112 * t112) * (t110 * t110);
     const ariane4_free_real_t t116 = t112 * t115 * t7 * parameters[IA2] - (t113 * parameters[FV2]
         + t114 * parameters[FC2]);
     out[1] = ARIANE4_FREE_C(83.33333333333333) * t116 + t111 * t107;
+    /* joint j3: drive */
     const ariane4_free_real_t t117 = ARIANE4_FREE_C(0.06366143813161289) * t14
         - ARIANE4_FREE_C(0.9979715533496006) * t9;
     const ariane4_free_real_t t118 = ARIANE4_FREE_SQRT(ARIANE4_FREE_C(0.052812) * t117
@@ -270,13 +293,14 @@ int ariane4_free_bias_standard(
     const ariane4_free_real_t t120 = ARIANE4_FREE_C(-0.046787723832235825) * t118 / t119;
     const ariane4_free_real_t t121 = ARIANE4_FREE_C(-1.0) / t118;
     const ariane4_free_real_t t122 = t119 * (ARIANE4_FREE_C(7124.375926654358) * t121) * dq[2];
-    const ariane4_free_real_t t123 = ariane4_free_sign(t122);
+    const ariane4_free_real_t t123 = ariane4_free_sign(t122); /* joint j3: coulomb_friction */
+    /* joint j3: drive */
     const ariane4_free_real_t t124 = ARIANE4_FREE_C(-7124.375926654358) * t117
         + ARIANE4_FREE_C(-188.12627071923498) * (t121 * t121) * (t119 * t119);
     const ariane4_free_real_t t125 = t122 * parameters[FV3] + t123 * parameters[FC3]
         + t121 * t124 * (dq[2] * dq[2]) * parameters[IA3];
     out[2] = ARIANE4_FREE_C(-333.3333333333333) * t125 - t120 * t103;
-    const ariane4_free_real_t t126 = ariane4_free_sign(dq[3]);
+    const ariane4_free_real_t t126 = ariane4_free_sign(dq[3]); /* joint j4: coulomb_friction */
     const ariane4_free_real_t t127 = ARIANE4_FREE_C(20.0) * (ARIANE4_FREE_C(1.0e2) * dq[3] * parameters[FV4]
         + t126 * parameters[FC4]) + ARIANE4_FREE_C(0.2) * t69;
     out[3] = t127;

@@ -8,16 +8,16 @@
  */
 #include "ariane4_free_private.h"
 
-#if ARIANE4_FREE_GENERATION != 0x261051E4UL
+#if ARIANE4_FREE_GENERATION != 0x6EBE5535UL
 #error "ariane4_free.h and ariane4_free_check_parameters.c are of different generations: generate the arm again"
 #endif
 
-int ariane4_free_check_parameters(const ariane4_free_real_t parameters[ARIANE4_FREE_N_PARAMETERS])
+ariane4_free_status_t ariane4_free_check_parameters(const ariane4_free_real_t parameters[ARIANE4_FREE_N_PARAMETERS])
 {
     return ariane4_free_within(parameters, 34, ARIANE4_FREE_C(1.0e18)) ? ARIANE4_FREE_STATUS_OK : ARIANE4_FREE_STATUS_INPUT;
 }
 
-int ariane4_free_check_parameters_standard(const ariane4_free_real_t parameters[ARIANE4_FREE_N_STANDARD_PARAMETERS])
+ariane4_free_status_t ariane4_free_check_parameters_standard(const ariane4_free_real_t parameters[ARIANE4_FREE_N_STANDARD_PARAMETERS])
 {
     return ariane4_free_within(parameters, 52, ARIANE4_FREE_C(1.0e18)) ? ARIANE4_FREE_STATUS_OK : ARIANE4_FREE_STATUS_INPUT;
 }

@@ -8,8 +8,8 @@
  *
  * Operations: 33 (24 mul, 9 add, 0 neg), 3 div, 3 sqrt, 6 trig.
  *
- * @param[in]   q    [4]  [rad]            joint coordinates; norm at most 10000
- * @param[out]  out  [4]  [(N m) per (A)]  drive gains K
+ * @param[in]   q    [4]  [rad]        joint coordinates; norm at most 10000
+ * @param[out]  out  [4]  [N m per A]  drive gains K
  *
  * Coordinates:
  *
@@ -20,15 +20,15 @@
  */
 #include "ariane4_free_private.h"
 
-#if ARIANE4_FREE_GENERATION != 0x261051E4UL
+#if ARIANE4_FREE_GENERATION != 0x6EBE5535UL
 #error "ariane4_free.h and ariane4_free_drive_gain.c are of different generations: generate the arm again"
 #endif
 
-int ariane4_free_drive_gain(
+ariane4_free_status_t ariane4_free_drive_gain(
     const ariane4_free_real_t q[ARIANE4_FREE_N_JOINTS],
     ariane4_free_real_t out[ARIANE4_FREE_N_JOINTS])
 {
-    int status = ARIANE4_FREE_STATUS_OK;
+    ariane4_free_status_t status = ARIANE4_FREE_STATUS_OK;
 
     if (!ariane4_free_within_joints(q, ARIANE4_FREE_C(1.0e8))) {
         status |= ARIANE4_FREE_STATUS_INPUT;
@@ -49,6 +49,7 @@ int ariane4_free_drive_gain(
     ARIANE4_FREE_SINCOS(q[1], &t5, &t6);
     ariane4_free_real_t t10, t11;
     ARIANE4_FREE_SINCOS(q[2], &t10, &t11);
+    /* joint j1: drive */
     const ariane4_free_real_t
         t2 = ARIANE4_FREE_SQRT(ARIANE4_FREE_C(0.037468) * (ARIANE4_FREE_C(0.28217402066925895) * t1
         + ARIANE4_FREE_C(0.9593632378089879) * t0) + ARIANE4_FREE_C(0.10769300000000001));
@@ -56,6 +57,7 @@ int ariane4_free_drive_gain(
     const ariane4_free_real_t t4 = ARIANE4_FREE_C(-0.004) * ((ARIANE4_FREE_C(-0.28217402066925895) * t0
         + ARIANE4_FREE_C(0.9593632378089879) * t1) * (ARIANE4_FREE_C(3885.523436256565) * t3));
     out[0] = t4;
+    /* joint j2: drive */
     const ariane4_free_real_t
         t7 = ARIANE4_FREE_SQRT(ARIANE4_FREE_C(0.078402) * (ARIANE4_FREE_C(-0.8305958991958126) * t6
         + ARIANE4_FREE_C(0.5568756164881881) * t5) + ARIANE4_FREE_C(0.293698));
@@ -63,6 +65,7 @@ int ariane4_free_drive_gain(
     const ariane4_free_real_t t9 = ARIANE4_FREE_C(0.012) * ((ARIANE4_FREE_C(0.8305958991958126) * t5
         + ARIANE4_FREE_C(0.5568756164881881) * t6) * (ARIANE4_FREE_C(2656.3065671641784) * t8));
     out[1] = t9;
+    /* joint j3: drive */
     const ariane4_free_real_t
         t12 = ARIANE4_FREE_SQRT(ARIANE4_FREE_C(0.052812) * (ARIANE4_FREE_C(0.06366143813161289) * t11
         + ARIANE4_FREE_C(-0.9979715533496006) * t10) + ARIANE4_FREE_C(0.242037));

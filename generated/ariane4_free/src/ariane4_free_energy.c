@@ -60,11 +60,11 @@
  */
 #include "ariane4_free_private.h"
 
-#if ARIANE4_FREE_GENERATION != 0x261051E4UL
+#if ARIANE4_FREE_GENERATION != 0x6EBE5535UL
 #error "ariane4_free.h and ariane4_free_energy.c are of different generations: generate the arm again"
 #endif
 
-int ariane4_free_energy(
+ariane4_free_status_t ariane4_free_energy(
     const ariane4_free_real_t q[ARIANE4_FREE_N_JOINTS],
     const ariane4_free_real_t dq[ARIANE4_FREE_N_JOINTS],
     const ariane4_free_real_t parameters[ARIANE4_FREE_N_PARAMETERS],
@@ -73,7 +73,7 @@ int ariane4_free_energy(
 {
     enum { ZZ1R = 0, XX2R, XY2, XZ2R, YZ2, ZZ2R, MX2R, MY2, XX3R, XY3R, XZ3, YZ3, ZZ3R, MX3R, MY3R, XX4R, XY4,
         XZ4R, YZ4R, ZZ4, MX4, MY4, FV1, FC1, IA1, FV2, FC2, IA2, FV3, FC3, IA3, FV4, FC4, IA4 };
-    int status = ARIANE4_FREE_STATUS_OK;
+    ariane4_free_status_t status = ARIANE4_FREE_STATUS_OK;
 
     if (!ariane4_free_within_joints(q, ARIANE4_FREE_C(1.0e8))
         || !ariane4_free_within_joints(dq, ARIANE4_FREE_C(1.0e10))
@@ -99,17 +99,17 @@ int ariane4_free_energy(
     ARIANE4_FREE_SINCOS(q[2], &t10, &t9);
     ariane4_free_real_t t23, t22;
     ARIANE4_FREE_SINCOS(q[3], &t23, &t22);
-    const ariane4_free_real_t t1 = t0 * dq[0];
+    const ariane4_free_real_t t1 = t0 * dq[0]; /* link j2: motion */
     const ariane4_free_real_t t3 = t2 * dq[0];
     const ariane4_free_real_t t4 = t1 * (parameters[XX2R] * t1 + parameters[XY2] * t3
         + parameters[XZ2R] * dq[1]);
     const ariane4_free_real_t t5 = dq[1] * (parameters[XZ2R] * t1 + parameters[YZ2] * t3
         + parameters[ZZ2R] * dq[1]);
     const ariane4_free_real_t t6 = t4 + t3 * (parameters[XY2] * t1 + parameters[YZ2] * dq[1]) + t5;
-    const ariane4_free_real_t t7 = ARIANE4_FREE_C(-0.116) * dq[0];
+    const ariane4_free_real_t t7 = ARIANE4_FREE_C(-0.116) * dq[0]; /* link j2: velocity of its origin */
     const ariane4_free_real_t t8 = ARIANE4_FREE_C(0.5) * (dq[0] * (parameters[ZZ1R] * dq[0]))
         + ARIANE4_FREE_C(0.5) * t6 + (parameters[MY2] * (t1 * t7) - parameters[MX2R] * (t3 * t7));
-    const ariane4_free_real_t t11 = t9 * t1 + t10 * t3;
+    const ariane4_free_real_t t11 = t9 * t1 + t10 * t3; /* link j3: motion */
     const ariane4_free_real_t t12 = t9 * t3 - t10 * t1;
     const ariane4_free_real_t t13 = dq[1] + dq[2];
     const ariane4_free_real_t t14 = t11 * (parameters[XX3R] * t11 + parameters[XY3R] * t12
@@ -117,13 +117,13 @@ int ariane4_free_energy(
     const ariane4_free_real_t t15 = t13 * (parameters[XZ3] * t11 + parameters[YZ3] * t12
         + parameters[ZZ3R] * t13);
     const ariane4_free_real_t t16 = t14 + t12 * (parameters[XY3R] * t11 + parameters[YZ3] * t13) + t15;
-    const ariane4_free_real_t t17 = t7 + ARIANE4_FREE_C(-0.443) * t3;
+    const ariane4_free_real_t t17 = t7 + ARIANE4_FREE_C(-0.443) * t3; /* link j3: velocity of its origin */
     const ariane4_free_real_t t18 = ARIANE4_FREE_C(0.443) * dq[1];
     const ariane4_free_real_t t19 = t9 * t18;
     const ariane4_free_real_t t20 = t10 * t18;
     const ariane4_free_real_t t21 = parameters[MX3R] * (t13 * t19 - t12 * t17) + parameters[MY3R] * (t11 * t17
         - t13 * t20);
-    const ariane4_free_real_t t24 = t22 * t11 - t23 * t13;
+    const ariane4_free_real_t t24 = t22 * t11 - t23 * t13; /* link j4: motion */
     const ariane4_free_real_t t25 = t23 * t11 + t22 * t13;
     const ariane4_free_real_t t26 = dq[3] + t12;
     const ariane4_free_real_t t27 = t24 * (parameters[XX4R] * t24 - parameters[XY4] * t25
@@ -131,12 +131,13 @@ int ariane4_free_energy(
     const ariane4_free_real_t t28 = t26 * (parameters[XZ4R] * t24 - parameters[YZ4R] * t25
         + parameters[ZZ4] * t26);
     const ariane4_free_real_t t29 = t27 - t25 * (parameters[XY4] * t24 + parameters[YZ4R] * t26) + t28;
-    const ariane4_free_real_t t30 = ARIANE4_FREE_C(-0.1) * t12 - t17;
+    const ariane4_free_real_t t30 = ARIANE4_FREE_C(-0.1) * t12 - t17; /* link j4: velocity of its origin */
     const ariane4_free_real_t t31 = t19 + ARIANE4_FREE_C(-0.1) * t13;
     const ariane4_free_real_t t32 = t26 * (t22 * t30 - t23 * t20) + t25 * t31;
     const ariane4_free_real_t t33 = t24 * t31 - t26 * (t22 * t20 + t23 * t30);
     const ariane4_free_real_t t34 = t8 + ARIANE4_FREE_C(0.5) * t16 + t21 + ARIANE4_FREE_C(0.5) * t29
         + (parameters[MX4] * t32 + parameters[MY4] * t33);
+    /* joint j1: drive */
     const ariane4_free_real_t
         t37 = ARIANE4_FREE_SQRT(ARIANE4_FREE_C(0.037468) * (ARIANE4_FREE_C(0.28217402066925895) * t36
         + ARIANE4_FREE_C(0.9593632378089879) * t35) + ARIANE4_FREE_C(0.10769300000000001));
@@ -145,6 +146,7 @@ int ariane4_free_energy(
         + ARIANE4_FREE_C(-0.9593632378089879) * t36) * (ARIANE4_FREE_C(3885.523436256565) * t38);
     const ariane4_free_real_t t40 = t34
         + ARIANE4_FREE_C(0.5) * (parameters[IA1] * (t39 * t39) * (dq[0] * dq[0]));
+    /* joint j2: drive */
     const ariane4_free_real_t
         t41 = ARIANE4_FREE_SQRT(ARIANE4_FREE_C(0.078402) * (ARIANE4_FREE_C(-0.8305958991958126) * t2
         + ARIANE4_FREE_C(0.5568756164881881) * t0) + ARIANE4_FREE_C(0.293698));
@@ -153,6 +155,7 @@ int ariane4_free_energy(
         + ARIANE4_FREE_C(0.5568756164881881) * t2) * (ARIANE4_FREE_C(2656.3065671641784) * t42);
     const ariane4_free_real_t t44 = t40
         + ARIANE4_FREE_C(0.5) * (parameters[IA2] * (t43 * t43) * (dq[1] * dq[1]));
+    /* joint j3: drive */
     const ariane4_free_real_t
         t45 = ARIANE4_FREE_SQRT(ARIANE4_FREE_C(0.052812) * (ARIANE4_FREE_C(0.06366143813161289) * t9
         + ARIANE4_FREE_C(-0.9979715533496006) * t10) + ARIANE4_FREE_C(0.242037));
@@ -162,9 +165,9 @@ int ariane4_free_energy(
     const ariane4_free_real_t t48 = t44
         + ARIANE4_FREE_C(0.5) * (parameters[IA3] * (t47 * t47) * (dq[2] * dq[2]));
     kinetic[0] = t48 + ARIANE4_FREE_C(0.5) * (ARIANE4_FREE_C(1.0e4) * parameters[IA4] * (dq[3] * dq[3]));
-    const ariane4_free_real_t t49 = ARIANE4_FREE_C(9.81) * t0;
+    const ariane4_free_real_t t49 = ARIANE4_FREE_C(9.81) * t0; /* link j2: motion */
     const ariane4_free_real_t t50 = ARIANE4_FREE_C(9.81) * t2;
-    const ariane4_free_real_t t51 = t9 * t49 + t10 * t50;
+    const ariane4_free_real_t t51 = t9 * t49 + t10 * t50; /* link j3: motion */
     const ariane4_free_real_t t52 = parameters[MX3R] * t51 + parameters[MY3R] * (t9 * t50 - t10 * t49);
     const ariane4_free_real_t t53 = parameters[MX2R] * t49 + parameters[MY2] * t50 + t52
         + (parameters[MX4] * (t22 * t51) - parameters[MY4] * (t23 * t51));

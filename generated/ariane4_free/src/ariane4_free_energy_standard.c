@@ -78,11 +78,11 @@
  */
 #include "ariane4_free_private.h"
 
-#if ARIANE4_FREE_GENERATION != 0x261051E4UL
+#if ARIANE4_FREE_GENERATION != 0x6EBE5535UL
 #error "ariane4_free.h and ariane4_free_energy_standard.c are of different generations: generate the arm again"
 #endif
 
-int ariane4_free_energy_standard(
+ariane4_free_status_t ariane4_free_energy_standard(
     const ariane4_free_real_t q[ARIANE4_FREE_N_JOINTS],
     const ariane4_free_real_t dq[ARIANE4_FREE_N_JOINTS],
     const ariane4_free_real_t parameters[ARIANE4_FREE_N_STANDARD_PARAMETERS],
@@ -92,7 +92,7 @@ int ariane4_free_energy_standard(
     enum { XX1 = 0, XY1, XZ1, YY1, YZ1, ZZ1, MX1, MY1, MZ1, M1, XX2, XY2, XZ2, YY2, YZ2, ZZ2, MX2, MY2, MZ2,
         M2, XX3, XY3, XZ3, YY3, YZ3, ZZ3, MX3, MY3, MZ3, M3, XX4, XY4, XZ4, YY4, YZ4, ZZ4, MX4, MY4, MZ4, M4,
         FV1, FC1, IA1, FV2, FC2, IA2, FV3, FC3, IA3, FV4, FC4, IA4 };
-    int status = ARIANE4_FREE_STATUS_OK;
+    ariane4_free_status_t status = ARIANE4_FREE_STATUS_OK;
 
     if (!ariane4_free_within_joints(q, ARIANE4_FREE_C(1.0e8))
         || !ariane4_free_within_joints(dq, ARIANE4_FREE_C(1.0e10))
@@ -118,19 +118,19 @@ int ariane4_free_energy_standard(
     ARIANE4_FREE_SINCOS(q[2], &t5, &t2);
     ariane4_free_real_t t26, t28;
     ARIANE4_FREE_SINCOS(q[3], &t26, &t28);
-    const ariane4_free_real_t t1 = t0 * dq[0];
+    const ariane4_free_real_t t1 = t0 * dq[0]; /* link j2: motion */
     const ariane4_free_real_t t4 = t3 * dq[0];
-    const ariane4_free_real_t t6 = t2 * t1 + t5 * t4;
+    const ariane4_free_real_t t6 = t2 * t1 + t5 * t4; /* link j3: motion */
     const ariane4_free_real_t t7 = t2 * t4 - t5 * t1;
     const ariane4_free_real_t t8 = dq[1] + dq[2];
     const ariane4_free_real_t t9 = t6 * (parameters[XX3] * t6 + parameters[XY3] * t7 + t8 * parameters[XZ3]);
     const ariane4_free_real_t t10 = t7 * (parameters[XY3] * t6 + parameters[YY3] * t7 + t8 * parameters[YZ3]);
     const ariane4_free_real_t t11 = t8 * (parameters[XZ3] * t6 + parameters[YZ3] * t7 + t8 * parameters[ZZ3]);
-    const ariane4_free_real_t t12 = ARIANE4_FREE_C(0.443) * dq[1];
+    const ariane4_free_real_t t12 = ARIANE4_FREE_C(0.443) * dq[1]; /* link j3: velocity of its origin */
     const ariane4_free_real_t t13 = t5 * t12;
     const ariane4_free_real_t t14 = t2 * t12;
-    const ariane4_free_real_t t15 = ARIANE4_FREE_C(0.116) * dq[0];
-    const ariane4_free_real_t t16 = t15 + ARIANE4_FREE_C(0.443) * t4;
+    const ariane4_free_real_t t15 = ARIANE4_FREE_C(0.116) * dq[0]; /* link j2: velocity of its origin */
+    const ariane4_free_real_t t16 = t15 + ARIANE4_FREE_C(0.443) * t4; /* link j3: velocity of its origin */
     const ariane4_free_real_t t17 = parameters[M3] * (t13 * t13 + t14 * t14 + t16 * t16);
     const ariane4_free_real_t t18 = t1 * (t1 * parameters[XX2] + t4 * parameters[XY2]
         + dq[1] * parameters[XZ2]);
@@ -145,13 +145,14 @@ int ariane4_free_energy_standard(
         + t8 * t13);
     const ariane4_free_real_t t24 = t22 + ARIANE4_FREE_C(0.5) * (t9 + t10 + t11 + t17) + (t23
         + parameters[MZ3] * (t7 * t13 - t6 * t14));
+    /* link j4: velocity of its origin */
     const ariane4_free_real_t t25 = t16 - (ARIANE4_FREE_C(0.436) * t6 - ARIANE4_FREE_C(-0.1) * t7);
     const ariane4_free_real_t t27 = t13 - ARIANE4_FREE_C(0.436) * t8;
     const ariane4_free_real_t t29 = t28 * t27 + t26 * t25;
     const ariane4_free_real_t t30 = t26 * t27 - t28 * t25;
     const ariane4_free_real_t t31 = t14 + ARIANE4_FREE_C(-0.1) * t8;
     const ariane4_free_real_t t32 = parameters[M4] * (t29 * t29 + t30 * t30 + t31 * t31);
-    const ariane4_free_real_t t33 = t26 * t8 - t28 * t6;
+    const ariane4_free_real_t t33 = t26 * t8 - t28 * t6; /* link j4: motion */
     const ariane4_free_real_t t34 = t28 * t8 + t26 * t6;
     const ariane4_free_real_t t35 = dq[3] + t7;
     const ariane4_free_real_t t36 = t33 * (parameters[XX4] * t33 + parameters[XY4] * t34
@@ -164,6 +165,7 @@ int ariane4_free_energy_standard(
         + t35 * t29);
     const ariane4_free_real_t t40 = t24 + ARIANE4_FREE_C(0.5) * (t36 + t37 + t38 + t32) + (t39
         - parameters[MZ4] * (t34 * t29 + t33 * t30));
+    /* joint j1: drive */
     const ariane4_free_real_t
         t43 = ARIANE4_FREE_SQRT(ARIANE4_FREE_C(0.037468) * (ARIANE4_FREE_C(0.28217402066925895) * t42
         + ARIANE4_FREE_C(0.9593632378089879) * t41) + ARIANE4_FREE_C(0.10769300000000001));
@@ -172,6 +174,7 @@ int ariane4_free_energy_standard(
         + ARIANE4_FREE_C(-0.9593632378089879) * t42) * (ARIANE4_FREE_C(3885.523436256565) * t44);
     const ariane4_free_real_t t46 = t40
         + ARIANE4_FREE_C(0.5) * (dq[0] * dq[0] * (t45 * t45 * parameters[IA1]));
+    /* joint j2: drive */
     const ariane4_free_real_t
         t47 = ARIANE4_FREE_SQRT(ARIANE4_FREE_C(0.078402) * (ARIANE4_FREE_C(-0.8305958991958126) * t3
         + ARIANE4_FREE_C(0.5568756164881881) * t0) + ARIANE4_FREE_C(0.293698));
@@ -180,6 +183,7 @@ int ariane4_free_energy_standard(
         + ARIANE4_FREE_C(0.5568756164881881) * t3) * (ARIANE4_FREE_C(2656.3065671641784) * t48);
     const ariane4_free_real_t t50 = t46
         + ARIANE4_FREE_C(0.5) * (dq[1] * dq[1] * (t49 * t49 * parameters[IA2]));
+    /* joint j3: drive */
     const ariane4_free_real_t
         t51 = ARIANE4_FREE_SQRT(ARIANE4_FREE_C(0.052812) * (ARIANE4_FREE_C(0.06366143813161289) * t2
         + ARIANE4_FREE_C(-0.9979715533496006) * t5) + ARIANE4_FREE_C(0.242037));
@@ -189,9 +193,9 @@ int ariane4_free_energy_standard(
     const ariane4_free_real_t t54 = t50
         + ARIANE4_FREE_C(0.5) * (dq[2] * dq[2] * (t53 * t53 * parameters[IA3]));
     kinetic[0] = t54 + ARIANE4_FREE_C(0.5) * (dq[3] * dq[3] * (ARIANE4_FREE_C(1.0e4) * parameters[IA4]));
-    const ariane4_free_real_t t55 = ARIANE4_FREE_C(9.81) * t0;
+    const ariane4_free_real_t t55 = ARIANE4_FREE_C(9.81) * t0; /* link j2: motion */
     const ariane4_free_real_t t56 = ARIANE4_FREE_C(9.81) * t3;
-    const ariane4_free_real_t t57 = t2 * t55 + t5 * t56;
+    const ariane4_free_real_t t57 = t2 * t55 + t5 * t56; /* link j3: motion */
     const ariane4_free_real_t t58 = t2 * t56 - t5 * t55;
     const ariane4_free_real_t t59 = t28 * t57 * parameters[MX4] - t26 * t57 * parameters[MY4]
         + t58 * parameters[MZ4];

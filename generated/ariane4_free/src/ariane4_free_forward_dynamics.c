@@ -6,7 +6,7 @@
  * Arm ariane4_free, description 79391f27012d8ce4.
  * SPDX-License-Identifier: 0BSD
  *
- * Operations: 519 (302 mul, 217 add, 0 neg), 7 div, 3 sqrt, 8 trig, 4 other.
+ * Operations: 519 (302 mul, 217 add, 0 neg), 7 div, 3 sqrt, 8 trig, 4 other calls (sign, select and the like).
  *
  * @param[in]   q           [4]   [rad]      joint coordinates; norm at most 10000
  * @param[in]   dq          [4]   [rad/s]    joint velocities; norm at most 100000
@@ -61,11 +61,11 @@
  */
 #include "ariane4_free_private.h"
 
-#if ARIANE4_FREE_GENERATION != 0x261051E4UL
+#if ARIANE4_FREE_GENERATION != 0x6EBE5535UL
 #error "ariane4_free.h and ariane4_free_forward_dynamics.c are of different generations: generate the arm again"
 #endif
 
-int ariane4_free_forward_dynamics(
+ariane4_free_status_t ariane4_free_forward_dynamics(
     const ariane4_free_real_t q[ARIANE4_FREE_N_JOINTS],
     const ariane4_free_real_t dq[ARIANE4_FREE_N_JOINTS],
     const ariane4_free_real_t input[ARIANE4_FREE_N_JOINTS],
@@ -74,7 +74,7 @@ int ariane4_free_forward_dynamics(
 {
     enum { ZZ1R = 0, XX2R, XY2, XZ2R, YZ2, ZZ2R, MX2R, MY2, XX3R, XY3R, XZ3, YZ3, ZZ3R, MX3R, MY3R, XX4R, XY4,
         XZ4R, YZ4R, ZZ4, MX4, MY4, FV1, FC1, IA1, FV2, FC2, IA2, FV3, FC3, IA3, FV4, FC4, IA4 };
-    int status = ARIANE4_FREE_STATUS_OK;
+    ariane4_free_status_t status = ARIANE4_FREE_STATUS_OK;
 
     if (!ariane4_free_within_joints(q, ARIANE4_FREE_C(1.0e8))
         || !ariane4_free_within_joints(dq, ARIANE4_FREE_C(1.0e10))
@@ -106,6 +106,7 @@ int ariane4_free_forward_dynamics(
         ariane4_free_zero(out, 4);
         return ARIANE4_FREE_STATUS_PIVOT;
     }
+    /* joint j3: drive */
     const ariane4_free_real_t t3 = ARIANE4_FREE_C(0.06366143813161289) * t1
         + ARIANE4_FREE_C(0.9979715533496006) * t2;
     const ariane4_free_real_t t4 = ARIANE4_FREE_C(0.06366143813161289) * t2
@@ -114,12 +115,15 @@ int ariane4_free_forward_dynamics(
         + ARIANE4_FREE_C(0.242037));
     const ariane4_free_real_t t6 = ARIANE4_FREE_C(1.0) / t5;
     const ariane4_free_real_t t7 = t3 * (ARIANE4_FREE_C(7124.375926654358) * t6);
+    /* link j4: inertia of it and all beyond */
     const ariane4_free_real_t t10 = t8 * parameters[XX4R] + parameters[XY4] * (ARIANE4_FREE_C(-2.0) * t9);
     const ariane4_free_real_t t11 = t8 * t10;
+    /* link j4: column of the mass matrix */
     const ariane4_free_real_t t12 = t9 * parameters[MY4] - t8 * parameters[MX4];
-    const ariane4_free_real_t t13 = ARIANE4_FREE_C(0.2) * t12;
+    const ariane4_free_real_t t13 = ARIANE4_FREE_C(0.2) * t12; /* link j4: inertia of it and all beyond */
     const ariane4_free_real_t t14 = parameters[ZZ3R] + (parameters[XX4R] - t11 + t13);
     const ariane4_free_real_t t15 = t14 + parameters[IA3] * (t7 * t7);
+    /* link j4: column of the mass matrix */
     const ariane4_free_real_t t16 = t9 * parameters[XZ4R] + t8 * parameters[YZ4R];
     const ariane4_free_real_t t17 = ARIANE4_FREE_C(-1.0) / t0;
     const ariane4_free_real_t t18 = t16 * t17;
@@ -133,6 +137,7 @@ int ariane4_free_forward_dynamics(
         ariane4_free_zero(out, 4);
         return ARIANE4_FREE_STATUS_PIVOT;
     }
+    /* joint j2: drive */
     const ariane4_free_real_t t23 = ARIANE4_FREE_C(0.8305958991958126) * t21
         + ARIANE4_FREE_C(0.5568756164881881) * t22;
     const ariane4_free_real_t t24 = ARIANE4_FREE_C(-0.8305958991958126) * t22
@@ -141,10 +146,11 @@ int ariane4_free_forward_dynamics(
         + ARIANE4_FREE_C(0.293698));
     const ariane4_free_real_t t26 = ARIANE4_FREE_C(1.0) / t25;
     const ariane4_free_real_t t27 = t23 * (ARIANE4_FREE_C(2656.3065671641784) * t26);
-    const ariane4_free_real_t t28 = parameters[MX3R] - t12;
-    const ariane4_free_real_t t29 = t2 * t28 - t1 * parameters[MY3R];
-    const ariane4_free_real_t t30 = ARIANE4_FREE_C(0.886) * t29;
+    const ariane4_free_real_t t28 = parameters[MX3R] - t12; /* link j4: inertia of it and all beyond */
+    const ariane4_free_real_t t29 = t2 * t28 - t1 * parameters[MY3R]; /* link j3: column of the mass matrix */
+    const ariane4_free_real_t t30 = ARIANE4_FREE_C(0.886) * t29; /* link j3: inertia of it and all beyond */
     const ariane4_free_real_t t31 = parameters[ZZ2R] + (t14 + t30) + parameters[IA2] * (t27 * t27);
+    /* link j4: column of the mass matrix */
     const ariane4_free_real_t t32 = t8 * parameters[MY4] + t9 * parameters[MX4];
     const ariane4_free_real_t t33 = ARIANE4_FREE_C(-0.443) * (t1 * t32) - t16;
     const ariane4_free_real_t t34 = t33 * t17;
@@ -161,19 +167,23 @@ int ariane4_free_forward_dynamics(
         ariane4_free_zero(out, 4);
         return ARIANE4_FREE_STATUS_PIVOT;
     }
-    const ariane4_free_real_t t40 = parameters[ZZ4] + t13;
+    const ariane4_free_real_t t40 = parameters[ZZ4] + t13; /* link j4: inertia of it and all beyond */
     const ariane4_free_real_t t41 = parameters[XX3R] + t11;
+    /* link j4: column of the mass matrix */
     const ariane4_free_real_t t42 = t8 * parameters[XZ4R] - t9 * parameters[YZ4R];
-    const ariane4_free_real_t t43 = parameters[XY3R] + t42;
+    const ariane4_free_real_t t43 = parameters[XY3R] + t42; /* link j4: inertia of it and all beyond */
+    /* link j3: inertia of it and all beyond */
     const ariane4_free_real_t t44 = t2 * (t40 - t41) + t43 * (ARIANE4_FREE_C(2.0) * t1);
     const ariane4_free_real_t t45 = t2 * t44;
     const ariane4_free_real_t t46 = parameters[XX2R] + (t40 - t45);
-    const ariane4_free_real_t t47 = t2 * parameters[MY3R] + t1 * t28;
+    const ariane4_free_real_t t47 = t2 * parameters[MY3R] + t1 * t28; /* link j3: column of the mass matrix */
+    /* link j2: inertia of it and all beyond */
     const ariane4_free_real_t t48 = (parameters[XY2] + (t43 - t1 * t44
         + ARIANE4_FREE_C(-0.443) * t47)) * (ARIANE4_FREE_C(2.0) * t21);
     const ariane4_free_real_t t49 = t22 * (t22 * (t41 + t45 + t30 - t46) + t48);
     const ariane4_free_real_t t50 = ARIANE4_FREE_C(0.232) * (t22 * (parameters[MX2R] + t29)
         - t21 * (parameters[MY2] + t47));
+    /* joint j1: drive */
     const ariane4_free_real_t t53 = ARIANE4_FREE_C(-0.28217402066925895) * t51
         + ARIANE4_FREE_C(0.9593632378089879) * t52;
     const ariane4_free_real_t t54 = ARIANE4_FREE_C(0.28217402066925895) * t52
@@ -183,16 +193,19 @@ int ariane4_free_forward_dynamics(
     const ariane4_free_real_t t56 = ARIANE4_FREE_C(-1.0) / t55;
     const ariane4_free_real_t t57 = t53 * (ARIANE4_FREE_C(3885.523436256565) * t56);
     const ariane4_free_real_t t58 = parameters[ZZ1R] + (t46 + t49 + t50) + parameters[IA1] * (t57 * t57);
+    /* link j4: column of the mass matrix */
     const ariane4_free_real_t t59 = parameters[ZZ4] + ARIANE4_FREE_C(0.1) * t12;
     const ariane4_free_real_t t60 = t22 * (ARIANE4_FREE_C(0.443) * t12 - (t1 * t42 + t2 * t59));
     const ariane4_free_real_t t61 = t21 * (t1 * t59 - t2 * t42) + t60 + ARIANE4_FREE_C(0.116) * t12;
     const ariane4_free_real_t t62 = t61 * t17;
+    /* link j4: inertia of it and all beyond */
     const ariane4_free_real_t t63 = parameters[XY4] + t9 * t10 + ARIANE4_FREE_C(0.1) * t32 - parameters[XZ3];
     const ariane4_free_real_t t64 = parameters[YZ3] - t16;
-    const ariane4_free_real_t t65 = t2 * t63 + t1 * t64;
+    const ariane4_free_real_t t65 = t2 * t63 + t1 * t64; /* link j3: column of the mass matrix */
     const ariane4_free_real_t t66 = t1 * t63 - t2 * t64;
     const ariane4_free_real_t t67 = t61 * t18 - (t21 * t65 + t22 * t66);
     const ariane4_free_real_t t68 = t67 * t36;
+    /* link j2: column of the mass matrix */
     const ariane4_free_real_t t69 = t21 * (t65 + ARIANE4_FREE_C(-0.443) * t32 - parameters[XZ2R]) + t22 * (t66
         - parameters[YZ2]);
     const ariane4_free_real_t t70 = t69 + t61 * t34 + t67 * t37;
@@ -208,14 +221,14 @@ int ariane4_free_forward_dynamics(
         ariane4_free_zero(out, 4);
         return ARIANE4_FREE_STATUS_PIVOT;
     }
-    const ariane4_free_real_t t75 = t21 * dq[0];
+    const ariane4_free_real_t t75 = t21 * dq[0]; /* link j2: motion */
     const ariane4_free_real_t t76 = t22 * dq[0];
-    const ariane4_free_real_t t77 = t2 * t75 + t1 * t76;
+    const ariane4_free_real_t t77 = t2 * t75 + t1 * t76; /* link j3: motion */
     const ariane4_free_real_t t78 = t2 * t76 - t1 * t75;
     const ariane4_free_real_t t79 = t77 * t78;
     const ariane4_free_real_t t80 = dq[1] + dq[2];
     const ariane4_free_real_t t81 = t78 * t80;
-    const ariane4_free_real_t t82 = ARIANE4_FREE_C(2.0) * t81;
+    const ariane4_free_real_t t82 = ARIANE4_FREE_C(2.0) * t81; /* link j4: motion */
     const ariane4_free_real_t t83 = t9 * t79 + t8 * t82;
     const ariane4_free_real_t t84 = t9 * t77 + t8 * t80;
     const ariane4_free_real_t t85 = dq[3] + t78;
@@ -224,104 +237,127 @@ int ariane4_free_forward_dynamics(
     const ariane4_free_real_t t88 = t9 * t82 - t8 * t79;
     const ariane4_free_real_t t89 = t8 * t77 - t9 * t80;
     const ariane4_free_real_t t90 = t89 * t85;
-    const ariane4_free_real_t t91 = t90 + (t88 + t90);
-    const ariane4_free_real_t t92 = t89 * t84;
-    const ariane4_free_real_t t93 = t77 * t80;
-    const ariane4_free_real_t t94 = t93 + t92;
+    const ariane4_free_real_t t91 = t90 + (t88 + t90); /* link j4: force and moment */
+    const ariane4_free_real_t t92 = t89 * t84; /* link j4: motion */
+    const ariane4_free_real_t t93 = t77 * t80; /* link j3: motion */
+    const ariane4_free_real_t t94 = t93 + t92; /* link j4: force and moment */
     const ariane4_free_real_t t95 = parameters[ZZ4] * t86 - parameters[XX4R] * t87 + parameters[XY4] * t91
         + parameters[XZ4R] * t94;
-    const ariane4_free_real_t t96 = t84 * t84;
+    const ariane4_free_real_t t96 = t84 * t84; /* link j4: motion */
     const ariane4_free_real_t t97 = t85 * t85;
     const ariane4_free_real_t t98 = dq[0] * dq[0];
-    const ariane4_free_real_t t99 = ARIANE4_FREE_C(-0.116) * t98;
+    const ariane4_free_real_t t99 = ARIANE4_FREE_C(-0.116) * t98; /* link j2: motion */
     const ariane4_free_real_t t100 = t22 * t99 + ARIANE4_FREE_C(9.81) * t21;
     const ariane4_free_real_t t101 = t76 * t76;
     const ariane4_free_real_t t102 = dq[1] * dq[1];
-    const ariane4_free_real_t t103 = t100 + ARIANE4_FREE_C(-0.443) * (t102 + t101);
-    const ariane4_free_real_t t104 = t21 * t99 + ARIANE4_FREE_C(-9.81) * t22;
+    const ariane4_free_real_t t103 = t100 + ARIANE4_FREE_C(-0.443) * (t102 + t101); /* link j3: motion */
+    const ariane4_free_real_t t104 = t21 * t99 + ARIANE4_FREE_C(-9.81) * t22; /* link j2: motion */
     const ariane4_free_real_t t105 = t75 * t76;
-    const ariane4_free_real_t t106 = t104 + ARIANE4_FREE_C(-0.443) * t105;
+    const ariane4_free_real_t t106 = t104 + ARIANE4_FREE_C(-0.443) * t105; /* link j3: motion */
     const ariane4_free_real_t t107 = t1 * t103 + t2 * t106;
-    const ariane4_free_real_t t108 = t107 + ARIANE4_FREE_C(0.1) * t79;
+    const ariane4_free_real_t t108 = t107 + ARIANE4_FREE_C(0.1) * t79; /* link j4: motion */
+    /* link j4: force and moment */
     const ariane4_free_real_t t109 = t95 + parameters[YZ4R] * (t97 - t96) + parameters[MY4] * t108;
     const ariane4_free_real_t t110 = t87 - t86;
     const ariane4_free_real_t t111 = t92 - t93;
     const ariane4_free_real_t t112 = t90 * (parameters[XX4R] - parameters[ZZ4]) + parameters[XY4] * t110
         + parameters[YZ4R] * t111;
-    const ariane4_free_real_t t113 = t89 * t89;
+    const ariane4_free_real_t t113 = t89 * t89; /* link j4: motion */
+    /* link j4: force and moment */
     const ariane4_free_real_t t114 = t112 + parameters[XZ4R] * (t97 - t113) + parameters[MX4] * t108;
-    const ariane4_free_real_t t115 = ARIANE4_FREE_C(2.0) * t93;
+    const ariane4_free_real_t t115 = ARIANE4_FREE_C(2.0) * t93; /* link j4: motion */
+    /* link j3: force and moment */
     const ariane4_free_real_t t116 = parameters[XY3R] * t115 - (parameters[XX3R] * t81
         + parameters[ZZ3R] * t81) - parameters[XZ3] * t79;
-    const ariane4_free_real_t t117 = t78 * t78;
+    const ariane4_free_real_t t117 = t78 * t78; /* link j3: motion */
     const ariane4_free_real_t t118 = t80 * t80;
-    const ariane4_free_real_t t119 = dq[1] * t75;
-    const ariane4_free_real_t t120 = ARIANE4_FREE_C(-0.886) * t119;
+    const ariane4_free_real_t t119 = dq[1] * t75; /* link j2: motion */
+    const ariane4_free_real_t t120 = ARIANE4_FREE_C(-0.886) * t119; /* link j3: motion */
+    /* link j4: what it passes on */
     const ariane4_free_real_t t121 = t116 + parameters[YZ3] * (t118 - t117) + parameters[MY3R] * t120
         + (t8 * t109 + t9 * t114);
+    /* link j4: force and moment */
     const ariane4_free_real_t t122 = parameters[ZZ4] * t93 - parameters[XX4R] * t92 + parameters[YZ4R] * t88
         - parameters[XZ4R] * t83;
-    const ariane4_free_real_t t123 = t1 * t106 - t2 * t103;
-    const ariane4_free_real_t t124 = t117 + t118;
+    const ariane4_free_real_t t123 = t1 * t106 - t2 * t103; /* link j3: motion */
+    const ariane4_free_real_t t124 = t117 + t118; /* link j4: motion */
     const ariane4_free_real_t t125 = t123 - ARIANE4_FREE_C(0.1) * t124;
     const ariane4_free_real_t t126 = t120 + ARIANE4_FREE_C(0.2) * t93;
+    /* link j4: force and moment */
     const ariane4_free_real_t t127 = parameters[MX4] * (t9 * t125 + t8 * t126) + parameters[MY4] * (t8 * t125
         - t9 * t126);
     const ariane4_free_real_t t128 = t122 - parameters[XY4] * (t113 - t96) - t127;
     const ariane4_free_real_t t129 = parameters[MX4] * (t96 + t97) + parameters[MY4] * t111;
     const ariane4_free_real_t t130 = parameters[MX4] * t94 + parameters[MY4] * (t113 + t97);
-    const ariane4_free_real_t t131 = t9 * t129 + t8 * t130;
+    const ariane4_free_real_t t131 = t9 * t129 + t8 * t130; /* link j4: what it passes on */
+    /* link j3: force and moment */
     const ariane4_free_real_t t132 = t93 * (parameters[XX3R] - parameters[ZZ3R]) + parameters[XY3R] * t82
         - parameters[YZ3] * t79;
-    const ariane4_free_real_t t133 = t77 * t77;
+    const ariane4_free_real_t t133 = t77 * t77; /* link j3: motion */
+    /* link j4: what it passes on */
     const ariane4_free_real_t t134 = t132 - parameters[XZ3] * (t133 - t118) + parameters[MX3R] * t120 - (t128
         - ARIANE4_FREE_C(0.1) * t131);
-    const ariane4_free_real_t t135 = dq[1] * t76;
+    const ariane4_free_real_t t135 = dq[1] * t76; /* link j2: motion */
     const ariane4_free_real_t t136 = ARIANE4_FREE_C(2.0) * t119;
+    /* link j2: force and moment */
     const ariane4_free_real_t t137 = parameters[XY2] * t136 - (parameters[XX2R] * t135
         + parameters[ZZ2R] * t135) - parameters[XZ2R] * t105;
+    /* link j3: what it passes on */
     const ariane4_free_real_t t138 = t137 + parameters[YZ2] * (t102 - t101) + (t2 * t121 + t1 * t134);
+    /* link j4: what it passes on */
     const ariane4_free_real_t t139 = parameters[MX3R] * t115 + parameters[MY3R] * t82 + t131;
-    const ariane4_free_real_t t140 = ARIANE4_FREE_C(2.0) * t135;
+    const ariane4_free_real_t t140 = ARIANE4_FREE_C(2.0) * t135; /* link j2: motion */
+    /* link j2: force and moment */
     const ariane4_free_real_t t141 = t119 * (parameters[ZZ2R] - parameters[XX2R]) - parameters[XY2] * t140
         + parameters[YZ2] * t105;
-    const ariane4_free_real_t t142 = t75 * t75;
+    const ariane4_free_real_t t142 = t75 * t75; /* link j2: motion */
+    /* link j3: what it passes on */
     const ariane4_free_real_t t143 = t141 + parameters[XZ2R] * (t142 - t102) + (t1 * t121 - t2 * t134
         + ARIANE4_FREE_C(0.443) * t139);
+    /* link j2: what it passes on */
     const ariane4_free_real_t t144 = t21 * t138 + t22 * t143
         + ARIANE4_FREE_C(0.116) * (parameters[MX2R] * t136 + parameters[MY2] * t140 + t139);
     const ariane4_free_real_t t145 = t57 * dq[0];
-    const ariane4_free_real_t t146 = ariane4_free_sign(t145);
+    const ariane4_free_real_t t146 = ariane4_free_sign(t145); /* joint j1: coulomb_friction */
+    /* joint j1: drive */
     const ariane4_free_real_t t147 = ARIANE4_FREE_C(-3885.523436256565) * t54
         + ARIANE4_FREE_C(-72.7913960548305) * (t56 * t56) * (t53 * t53);
     const ariane4_free_real_t t148 = parameters[FV1] * t145 + parameters[FC1] * t146
         + parameters[IA1] * (t56 * t147 * t98);
-    const ariane4_free_real_t t149 = ariane4_free_sign(dq[3]);
+    const ariane4_free_real_t t149 = ariane4_free_sign(dq[3]); /* joint j4: coulomb_friction */
     const ariane4_free_real_t
         t150 = ARIANE4_FREE_C(1.0e2) * (parameters[FV4] * (ARIANE4_FREE_C(1.0e2) * dq[3])
         + parameters[FC4] * t149) - t128;
     const ariane4_free_real_t t151 = ARIANE4_FREE_C(5.0) * input[3] - t150;
     const ariane4_free_real_t t152 = input[0] * (ARIANE4_FREE_C(-0.004) * t57) + (t144 - t57 * t148)
         - t151 * t62;
+    /* link j4: force and moment */
     const ariane4_free_real_t t153 = parameters[MX4] * t91 + parameters[MY4] * t110;
+    /* link j3: force and moment */
     const ariane4_free_real_t t154 = parameters[XY3R] * (t133 - t117) - parameters[XX3R] * t79
         + (parameters[MY3R] * t123 - parameters[MX3R] * t107);
+    /* link j4: what it passes on */
     const ariane4_free_real_t t155 = t154 + (t9 * t109 - t8 * t114 - ARIANE4_FREE_C(0.1) * t153);
     const ariane4_free_real_t t156 = t7 * dq[2];
-    const ariane4_free_real_t t157 = ariane4_free_sign(t156);
+    const ariane4_free_real_t t157 = ariane4_free_sign(t156); /* joint j3: coulomb_friction */
+    /* joint j3: drive */
     const ariane4_free_real_t t158 = ARIANE4_FREE_C(7124.375926654358) * t4
         + ARIANE4_FREE_C(188.12627071923498) * (t6 * t6) * (t3 * t3);
     const ariane4_free_real_t t159 = parameters[FV3] * t156 + parameters[FC3] * t157
         + parameters[IA3] * (t6 * t158 * (dq[2] * dq[2]));
     const ariane4_free_real_t t160 = input[2] * (ARIANE4_FREE_C(0.003) * t7) + (t7 * t159 + t155)
         + t151 * t18;
+    /* link j4: what it passes on */
     const ariane4_free_real_t t161 = parameters[MX3R] * t124 - parameters[MY3R] * t79 + (t8 * t129
         - t9 * t130);
+    /* link j3: what it passes on */
     const ariane4_free_real_t t162 = t2 * (parameters[MY3R] * (t133 + t118) - parameters[MX3R] * t79 - t153);
+    /* link j2: force and moment */
     const ariane4_free_real_t t163 = parameters[XX2R] * t105 - parameters[XY2] * (t142 - t101)
         + (parameters[MX2R] * t104 + parameters[MY2] * t100);
     const ariane4_free_real_t t164 = t27 * dq[1];
-    const ariane4_free_real_t t165 = ariane4_free_sign(t164);
+    const ariane4_free_real_t t165 = ariane4_free_sign(t164); /* joint j2: coulomb_friction */
+    /* joint j2: drive */
     const ariane4_free_real_t t166 = ARIANE4_FREE_C(-2656.3065671641784) * t24
         - ARIANE4_FREE_C(104.12987373940295) * (t26 * t26) * (t23 * t23);
     const ariane4_free_real_t t167 = parameters[FV2] * t164 + parameters[FC2] * t165

@@ -7,7 +7,7 @@
  * Arm ariane4_free, description 79391f27012d8ce4.
  * SPDX-License-Identifier: 0BSD
  *
- * Operations: 1887 (1102 mul, 782 add, 3 neg), 16 div, 3 sqrt, 8 trig, 7 other.
+ * Operations: 1887 (1102 mul, 782 add, 3 neg), 16 div, 3 sqrt, 8 trig, 7 other calls (sign, select and the like).
  *
  * @param[in]   q             [4]   [rad]                    joint coordinates; norm at most 10000
  * @param[in]   dq            [4]   [rad/s]                  joint velocities; norm at most 100000
@@ -15,9 +15,9 @@
  *                                                           norm at most 1e+09
  * @param[in]   parameters    [34]                           base parameters; norm at most 1e+09
  * @param[out]  ddq           [4]   [rad/s^2]                joint accelerations
- * @param[out]  ddq_by_q      [16]  [(rad/s^2) per (rad)]    d ddq / d q; 4 x 4, row-major
+ * @param[out]  ddq_by_q      [16]  [(rad/s^2) per rad]      d ddq / d q; 4 x 4, row-major
  * @param[out]  ddq_by_dq     [16]  [(rad/s^2) per (rad/s)]  d ddq / d dq; 4 x 4, row-major
- * @param[out]  ddq_by_input  [16]  [(rad/s^2) per (A)]      d ddq / d input; 4 x 4, row-major
+ * @param[out]  ddq_by_input  [16]  [(rad/s^2) per A]        d ddq / d input; 4 x 4, row-major
  *
  * Coordinates:
  *
@@ -65,11 +65,11 @@
  */
 #include "ariane4_free_private.h"
 
-#if ARIANE4_FREE_GENERATION != 0x261051E4UL
+#if ARIANE4_FREE_GENERATION != 0x6EBE5535UL
 #error "ariane4_free.h and ariane4_free_forward_dynamics_derivatives.c are of different generations: generate the arm again"
 #endif
 
-int ariane4_free_forward_dynamics_derivatives(
+ariane4_free_status_t ariane4_free_forward_dynamics_derivatives(
     const ariane4_free_real_t q[ARIANE4_FREE_N_JOINTS],
     const ariane4_free_real_t dq[ARIANE4_FREE_N_JOINTS],
     const ariane4_free_real_t input[ARIANE4_FREE_N_JOINTS],
@@ -81,7 +81,7 @@ int ariane4_free_forward_dynamics_derivatives(
 {
     enum { ZZ1R = 0, XX2R, XY2, XZ2R, YZ2, ZZ2R, MX2R, MY2, XX3R, XY3R, XZ3, YZ3, ZZ3R, MX3R, MY3R, XX4R, XY4,
         XZ4R, YZ4R, ZZ4, MX4, MY4, FV1, FC1, IA1, FV2, FC2, IA2, FV3, FC3, IA3, FV4, FC4, IA4 };
-    int status = ARIANE4_FREE_STATUS_OK;
+    ariane4_free_status_t status = ARIANE4_FREE_STATUS_OK;
 
     if (!ariane4_free_within_joints(q, ARIANE4_FREE_C(1.0e8))
         || !ariane4_free_within_joints(dq, ARIANE4_FREE_C(1.0e10))
@@ -119,6 +119,7 @@ int ariane4_free_forward_dynamics_derivatives(
         ariane4_free_zero(ddq_by_input, 16);
         return ARIANE4_FREE_STATUS_PIVOT;
     }
+    /* joint j3: drive */
     const ariane4_free_real_t t3 = ARIANE4_FREE_C(0.06366143813161289) * t1
         + ARIANE4_FREE_C(0.9979715533496006) * t2;
     const ariane4_free_real_t t4 = ARIANE4_FREE_C(0.06366143813161289) * t2
@@ -128,12 +129,15 @@ int ariane4_free_forward_dynamics_derivatives(
     const ariane4_free_real_t t6 = ARIANE4_FREE_C(1.0) / t5;
     const ariane4_free_real_t t7 = ARIANE4_FREE_C(7124.375926654358) * t6;
     const ariane4_free_real_t t8 = t3 * t7;
+    /* link j4: inertia of it and all beyond */
     const ariane4_free_real_t t11 = t9 * parameters[XX4R] + parameters[XY4] * (ARIANE4_FREE_C(-2.0) * t10);
     const ariane4_free_real_t t12 = t9 * t11;
+    /* link j4: column of the mass matrix */
     const ariane4_free_real_t t13 = t10 * parameters[MY4] - t9 * parameters[MX4];
-    const ariane4_free_real_t t14 = ARIANE4_FREE_C(0.2) * t13;
+    const ariane4_free_real_t t14 = ARIANE4_FREE_C(0.2) * t13; /* link j4: inertia of it and all beyond */
     const ariane4_free_real_t t15 = parameters[ZZ3R] + (parameters[XX4R] - t12 + t14);
     const ariane4_free_real_t t16 = t15 + parameters[IA3] * (t8 * t8);
+    /* link j4: column of the mass matrix */
     const ariane4_free_real_t t17 = t10 * parameters[XZ4R] + t9 * parameters[YZ4R];
     const ariane4_free_real_t t18 = ARIANE4_FREE_C(1.0) / t0;
     const ariane4_free_real_t t19 = t17 * t18;
@@ -153,6 +157,7 @@ int ariane4_free_forward_dynamics_derivatives(
         ariane4_free_zero(ddq_by_input, 16);
         return ARIANE4_FREE_STATUS_PIVOT;
     }
+    /* joint j2: drive */
     const ariane4_free_real_t t24 = ARIANE4_FREE_C(0.8305958991958126) * t22
         + ARIANE4_FREE_C(0.5568756164881881) * t23;
     const ariane4_free_real_t t25 = ARIANE4_FREE_C(-0.8305958991958126) * t23
@@ -162,15 +167,17 @@ int ariane4_free_forward_dynamics_derivatives(
     const ariane4_free_real_t t27 = ARIANE4_FREE_C(1.0) / t26;
     const ariane4_free_real_t t28 = ARIANE4_FREE_C(2656.3065671641784) * t27;
     const ariane4_free_real_t t29 = t24 * t28;
-    const ariane4_free_real_t t30 = parameters[MX3R] - t13;
-    const ariane4_free_real_t t31 = t2 * t30 - t1 * parameters[MY3R];
-    const ariane4_free_real_t t32 = ARIANE4_FREE_C(0.886) * t31;
+    const ariane4_free_real_t t30 = parameters[MX3R] - t13; /* link j4: inertia of it and all beyond */
+    const ariane4_free_real_t t31 = t2 * t30 - t1 * parameters[MY3R]; /* link j3: column of the mass matrix */
+    const ariane4_free_real_t t32 = ARIANE4_FREE_C(0.886) * t31; /* link j3: inertia of it and all beyond */
     const ariane4_free_real_t t33 = parameters[ZZ2R] + (t15 + t32);
     const ariane4_free_real_t t34 = t33 + parameters[IA2] * (t29 * t29);
+    /* link j4: column of the mass matrix */
     const ariane4_free_real_t t35 = t9 * parameters[MY4] + t10 * parameters[MX4];
     const ariane4_free_real_t t36 = t1 * t35;
     const ariane4_free_real_t t37 = t17 + ARIANE4_FREE_C(0.443) * t36;
     const ariane4_free_real_t t38 = t37 * t18;
+    /* link j3: column of the mass matrix */
     const ariane4_free_real_t t39 = ARIANE4_FREE_C(-0.443) * t31 - t15;
     const ariane4_free_real_t t40 = t39 + t37 * t19;
     const ariane4_free_real_t t41 = ARIANE4_FREE_C(-1.0) / t20;
@@ -191,20 +198,26 @@ int ariane4_free_forward_dynamics_derivatives(
         ariane4_free_zero(ddq_by_input, 16);
         return ARIANE4_FREE_STATUS_PIVOT;
     }
-    const ariane4_free_real_t t45 = parameters[ZZ4] + t14;
+    const ariane4_free_real_t t45 = parameters[ZZ4] + t14; /* link j4: inertia of it and all beyond */
     const ariane4_free_real_t t46 = parameters[XX3R] + t12;
+    /* link j4: column of the mass matrix */
     const ariane4_free_real_t t47 = t9 * parameters[XZ4R] - t10 * parameters[YZ4R];
-    const ariane4_free_real_t t48 = parameters[XY3R] + t47;
+    const ariane4_free_real_t t48 = parameters[XY3R] + t47; /* link j4: inertia of it and all beyond */
+    /* link j3: inertia of it and all beyond */
     const ariane4_free_real_t t49 = t2 * (t45 - t46) + t48 * (ARIANE4_FREE_C(2.0) * t1);
     const ariane4_free_real_t t50 = t2 * t49;
     const ariane4_free_real_t t51 = t46 + t50 + t32;
     const ariane4_free_real_t t52 = parameters[XX2R] + (t45 - t50);
-    const ariane4_free_real_t t53 = t2 * parameters[MY3R] + t1 * t30;
+    const ariane4_free_real_t t53 = t2 * parameters[MY3R] + t1 * t30; /* link j3: column of the mass matrix */
+    /* link j3: inertia of it and all beyond */
     const ariane4_free_real_t t54 = parameters[XY2] + (t48 - t1 * t49 + ARIANE4_FREE_C(-0.443) * t53);
+    /* link j2: inertia of it and all beyond */
     const ariane4_free_real_t t55 = t23 * (t23 * (t51 - t52) + t54 * (ARIANE4_FREE_C(2.0) * t22));
-    const ariane4_free_real_t t56 = parameters[MY2] + t53;
+    const ariane4_free_real_t t56 = parameters[MY2] + t53; /* link j3: inertia of it and all beyond */
     const ariane4_free_real_t t57 = parameters[MX2R] + t31;
+    /* link j2: inertia of it and all beyond */
     const ariane4_free_real_t t58 = t52 + t55 + ARIANE4_FREE_C(0.232) * (t23 * t57 - t22 * t56);
+    /* joint j1: drive */
     const ariane4_free_real_t t61 = ARIANE4_FREE_C(0.28217402066925895) * t59
         + ARIANE4_FREE_C(-0.9593632378089879) * t60;
     const ariane4_free_real_t t62 = ARIANE4_FREE_C(0.28217402066925895) * t60
@@ -215,17 +228,20 @@ int ariane4_free_forward_dynamics_derivatives(
     const ariane4_free_real_t t65 = ARIANE4_FREE_C(3885.523436256565) * t64;
     const ariane4_free_real_t t66 = t61 * t65;
     const ariane4_free_real_t t67 = parameters[ZZ1R] + t58 + parameters[IA1] * (t66 * t66);
+    /* link j4: column of the mass matrix */
     const ariane4_free_real_t t68 = parameters[ZZ4] + ARIANE4_FREE_C(0.1) * t13;
     const ariane4_free_real_t t69 = t2 * t47 - t1 * t68;
     const ariane4_free_real_t t70 = t1 * t47 + t2 * t68 - ARIANE4_FREE_C(0.443) * t13;
     const ariane4_free_real_t t71 = t22 * t69 + t23 * t70 - ARIANE4_FREE_C(0.116) * t13;
     const ariane4_free_real_t t72 = t71 * t18;
+    /* link j4: inertia of it and all beyond */
     const ariane4_free_real_t t73 = parameters[XY4] + t10 * t11 + ARIANE4_FREE_C(0.1) * t35 - parameters[XZ3];
     const ariane4_free_real_t t74 = parameters[YZ3] - t17;
-    const ariane4_free_real_t t75 = t2 * t73 + t1 * t74;
+    const ariane4_free_real_t t75 = t2 * t73 + t1 * t74; /* link j3: column of the mass matrix */
     const ariane4_free_real_t t76 = t1 * t73 - t2 * t74;
     const ariane4_free_real_t t77 = t71 * t19 - (t22 * t75 + t23 * t76);
     const ariane4_free_real_t t78 = t77 * t41;
+    /* link j3: inertia of it and all beyond */
     const ariane4_free_real_t t79 = t75 + ARIANE4_FREE_C(-0.443) * t35 - parameters[XZ2R];
     const ariane4_free_real_t t80 = t76 - parameters[YZ2];
     const ariane4_free_real_t t81 = t77 * t42 - (t71 * t38 - (t22 * t79 + t23 * t80));
@@ -247,14 +263,14 @@ int ariane4_free_forward_dynamics_derivatives(
         ariane4_free_zero(ddq_by_input, 16);
         return ARIANE4_FREE_STATUS_PIVOT;
     }
-    const ariane4_free_real_t t86 = t22 * dq[0];
+    const ariane4_free_real_t t86 = t22 * dq[0]; /* link j2: motion */
     const ariane4_free_real_t t87 = t23 * dq[0];
-    const ariane4_free_real_t t88 = t2 * t86 + t1 * t87;
+    const ariane4_free_real_t t88 = t2 * t86 + t1 * t87; /* link j3: motion */
     const ariane4_free_real_t t89 = t2 * t87 - t1 * t86;
     const ariane4_free_real_t t90 = t88 * t89;
     const ariane4_free_real_t t91 = dq[1] + dq[2];
     const ariane4_free_real_t t92 = t89 * t91;
-    const ariane4_free_real_t t93 = ARIANE4_FREE_C(2.0) * t92;
+    const ariane4_free_real_t t93 = ARIANE4_FREE_C(2.0) * t92; /* link j4: motion */
     const ariane4_free_real_t t94 = t10 * t90 + t9 * t93;
     const ariane4_free_real_t t95 = t9 * t91;
     const ariane4_free_real_t t96 = t10 * t88 + t95;
@@ -265,99 +281,116 @@ int ariane4_free_forward_dynamics_derivatives(
     const ariane4_free_real_t t101 = t10 * t91;
     const ariane4_free_real_t t102 = t9 * t88 - t101;
     const ariane4_free_real_t t103 = t102 * t97;
-    const ariane4_free_real_t t104 = t103 + (t100 + t103);
-    const ariane4_free_real_t t105 = t102 * t96;
-    const ariane4_free_real_t t106 = t88 * t91;
-    const ariane4_free_real_t t107 = t106 + t105;
+    const ariane4_free_real_t t104 = t103 + (t100 + t103); /* link j4: force and moment */
+    const ariane4_free_real_t t105 = t102 * t96; /* link j4: motion */
+    const ariane4_free_real_t t106 = t88 * t91; /* link j3: motion */
+    const ariane4_free_real_t t107 = t106 + t105; /* link j4: force and moment */
     const ariane4_free_real_t t108 = parameters[ZZ4] * t98 - parameters[XX4R] * t99 + parameters[XY4] * t104
         + parameters[XZ4R] * t107;
-    const ariane4_free_real_t t109 = t96 * t96;
+    const ariane4_free_real_t t109 = t96 * t96; /* link j4: motion */
     const ariane4_free_real_t t110 = t97 * t97;
     const ariane4_free_real_t t111 = dq[0] * dq[0];
-    const ariane4_free_real_t t112 = ARIANE4_FREE_C(0.116) * t111;
+    const ariane4_free_real_t t112 = ARIANE4_FREE_C(0.116) * t111; /* link j2: motion */
     const ariane4_free_real_t t113 = t23 * t112 - ARIANE4_FREE_C(9.81) * t22;
     const ariane4_free_real_t t114 = t87 * t87;
     const ariane4_free_real_t t115 = dq[1] * dq[1];
-    const ariane4_free_real_t t116 = ARIANE4_FREE_C(-0.443) * (t115 + t114) - t113;
+    const ariane4_free_real_t t116 = ARIANE4_FREE_C(-0.443) * (t115 + t114) - t113; /* link j3: motion */
     const ariane4_free_real_t t117 = t1 * t116;
-    const ariane4_free_real_t t118 = t22 * t112 + ARIANE4_FREE_C(9.81) * t23;
+    const ariane4_free_real_t t118 = t22 * t112 + ARIANE4_FREE_C(9.81) * t23; /* link j2: motion */
     const ariane4_free_real_t t119 = t86 * t87;
-    const ariane4_free_real_t t120 = ARIANE4_FREE_C(-0.443) * t119 - t118;
+    const ariane4_free_real_t t120 = ARIANE4_FREE_C(-0.443) * t119 - t118; /* link j3: motion */
     const ariane4_free_real_t t121 = t117 + t2 * t120;
-    const ariane4_free_real_t t122 = t121 + ARIANE4_FREE_C(0.1) * t90;
+    const ariane4_free_real_t t122 = t121 + ARIANE4_FREE_C(0.1) * t90; /* link j4: motion */
+    /* link j4: force and moment */
     const ariane4_free_real_t t123 = t108 + parameters[YZ4R] * (t110 - t109) + parameters[MY4] * t122;
     const ariane4_free_real_t t124 = t99 - t98;
     const ariane4_free_real_t t125 = parameters[XX4R] - parameters[ZZ4];
     const ariane4_free_real_t t126 = t105 - t106;
-    const ariane4_free_real_t t127 = t102 * t102;
+    const ariane4_free_real_t t127 = t102 * t102; /* link j4: motion */
+    /* link j4: force and moment */
     const ariane4_free_real_t t128 = t103 * t125 + parameters[XY4] * t124 + parameters[YZ4R] * t126
         + parameters[XZ4R] * (t110 - t127);
     const ariane4_free_real_t t129 = t128 + parameters[MX4] * t122;
-    const ariane4_free_real_t t130 = ARIANE4_FREE_C(2.0) * t106;
+    const ariane4_free_real_t t130 = ARIANE4_FREE_C(2.0) * t106; /* link j4: motion */
+    /* link j3: force and moment */
     const ariane4_free_real_t t131 = parameters[XY3R] * t130 - (parameters[XX3R] * t92
         + parameters[ZZ3R] * t92) - parameters[XZ3] * t90;
-    const ariane4_free_real_t t132 = t89 * t89;
+    const ariane4_free_real_t t132 = t89 * t89; /* link j3: motion */
     const ariane4_free_real_t t133 = t91 * t91;
-    const ariane4_free_real_t t134 = dq[1] * t86;
-    const ariane4_free_real_t t135 = ARIANE4_FREE_C(-0.886) * t134;
+    const ariane4_free_real_t t134 = dq[1] * t86; /* link j2: motion */
+    const ariane4_free_real_t t135 = ARIANE4_FREE_C(-0.886) * t134; /* link j3: motion */
+    /* link j4: what it passes on */
     const ariane4_free_real_t t136 = t131 + parameters[YZ3] * (t133 - t132) + parameters[MY3R] * t135
         + (t9 * t123 + t10 * t129);
+    /* link j4: force and moment */
     const ariane4_free_real_t t137 = parameters[ZZ4] * t106 - parameters[XX4R] * t105
         + parameters[YZ4R] * t100 - parameters[XZ4R] * t94;
-    const ariane4_free_real_t t138 = t2 * t116;
+    const ariane4_free_real_t t138 = t2 * t116; /* link j3: motion */
     const ariane4_free_real_t t139 = t1 * t120 - t138;
-    const ariane4_free_real_t t140 = t132 + t133;
+    const ariane4_free_real_t t140 = t132 + t133; /* link j4: motion */
     const ariane4_free_real_t t141 = t139 - ARIANE4_FREE_C(0.1) * t140;
     const ariane4_free_real_t t142 = t135 + ARIANE4_FREE_C(0.2) * t106;
+    /* link j4: force and moment */
     const ariane4_free_real_t t143 = parameters[MX4] * (t10 * t141 + t9 * t142) + parameters[MY4] * (t9 * t141
         - t10 * t142);
     const ariane4_free_real_t t144 = t137 - parameters[XY4] * (t127 - t109) - t143;
     const ariane4_free_real_t t145 = parameters[MX4] * (t109 + t110) + parameters[MY4] * t126;
     const ariane4_free_real_t t146 = parameters[MX4] * t107 + parameters[MY4] * (t127 + t110);
-    const ariane4_free_real_t t147 = t10 * t145 + t9 * t146;
-    const ariane4_free_real_t t148 = parameters[ZZ3R] - parameters[XX3R];
-    const ariane4_free_real_t t149 = t88 * t88;
+    const ariane4_free_real_t t147 = t10 * t145 + t9 * t146; /* link j4: what it passes on */
+    const ariane4_free_real_t t148 = parameters[ZZ3R] - parameters[XX3R]; /* link j3: force and moment */
+    const ariane4_free_real_t t149 = t88 * t88; /* link j3: motion */
+    /* link j3: force and moment */
     const ariane4_free_real_t t150 = parameters[XY3R] * t93 - t106 * t148 - parameters[YZ3] * t90
         - parameters[XZ3] * (t149 - t133);
+    /* link j4: what it passes on */
     const ariane4_free_real_t t151 = t150 + parameters[MX3R] * t135 - (t144 - ARIANE4_FREE_C(0.1) * t147);
-    const ariane4_free_real_t t152 = dq[1] * t87;
-    const ariane4_free_real_t t153 = parameters[ZZ2R] * t152;
-    const ariane4_free_real_t t154 = ARIANE4_FREE_C(2.0) * t134;
+    const ariane4_free_real_t t152 = dq[1] * t87; /* link j2: motion */
+    const ariane4_free_real_t t153 = parameters[ZZ2R] * t152; /* link j2: force and moment */
+    const ariane4_free_real_t t154 = ARIANE4_FREE_C(2.0) * t134; /* link j2: motion */
+    /* link j2: force and moment */
     const ariane4_free_real_t t155 = parameters[XY2] * t154 - (parameters[XX2R] * t152 + t153)
         - parameters[XZ2R] * t119;
     const ariane4_free_real_t t156 = parameters[YZ2] * (t115 - t114);
+    /* link j2: what it passes on */
     const ariane4_free_real_t t157 = t22 * (t155 + t156 + (t2 * t136 + t1 * t151));
+    /* link j4: what it passes on */
     const ariane4_free_real_t t158 = parameters[MX3R] * t130 + parameters[MY3R] * t93 + t147;
+    /* link j2: force and moment */
     const ariane4_free_real_t t159 = t134 * (parameters[ZZ2R] - parameters[XX2R]);
-    const ariane4_free_real_t t160 = ARIANE4_FREE_C(2.0) * t152;
+    const ariane4_free_real_t t160 = ARIANE4_FREE_C(2.0) * t152; /* link j2: motion */
     const ariane4_free_real_t t161 = t86 * t86;
-    const ariane4_free_real_t t162 = parameters[XZ2R] * (t161 - t115);
+    const ariane4_free_real_t t162 = parameters[XZ2R] * (t161 - t115); /* link j2: force and moment */
+    /* link j3: what it passes on */
     const ariane4_free_real_t t163 = t159 - parameters[XY2] * t160 + parameters[YZ2] * t119 + t162
         + (t1 * t136 - t2 * t151 + ARIANE4_FREE_C(0.443) * t158);
+    /* link j2: what it passes on */
     const ariane4_free_real_t t164 = t157 + t23 * t163 + ARIANE4_FREE_C(0.116) * (parameters[MX2R] * t154
         + parameters[MY2] * t160 + t158);
     const ariane4_free_real_t t165 = t66 * dq[0];
-    const ariane4_free_real_t t166 = ariane4_free_sign(t165);
-    const ariane4_free_real_t t167 = ARIANE4_FREE_C(72.7913960548305) * (t64 * t64);
+    const ariane4_free_real_t t166 = ariane4_free_sign(t165); /* joint j1: coulomb_friction */
+    const ariane4_free_real_t t167 = ARIANE4_FREE_C(72.7913960548305) * (t64 * t64); /* joint j1: drive */
     const ariane4_free_real_t t168 = t61 * t61;
     const ariane4_free_real_t t169 = ARIANE4_FREE_C(3885.523436256565) * t62 + t167 * t168;
     const ariane4_free_real_t t170 = t64 * t169;
     const ariane4_free_real_t t171 = parameters[FV1] * t165 + parameters[FC1] * t166
         + parameters[IA1] * (t170 * t111);
     const ariane4_free_real_t t172 = ARIANE4_FREE_C(0.004) * t66;
-    const ariane4_free_real_t t173 = ariane4_free_sign(dq[3]);
+    const ariane4_free_real_t t173 = ariane4_free_sign(dq[3]); /* joint j4: coulomb_friction */
     const ariane4_free_real_t
         t174 = ARIANE4_FREE_C(1.0e2) * (parameters[FV4] * (ARIANE4_FREE_C(1.0e2) * dq[3])
         + parameters[FC4] * t173) - t144;
     const ariane4_free_real_t t175 = ARIANE4_FREE_C(5.0) * input[3] - t174;
     const ariane4_free_real_t t176 = t164 - t66 * t171 - input[0] * t172 - t175 * t72;
+    /* link j4: force and moment */
     const ariane4_free_real_t t177 = parameters[MX4] * t104 + parameters[MY4] * t124;
+    /* link j3: force and moment */
     const ariane4_free_real_t t178 = parameters[XY3R] * (t149 - t132) - parameters[XX3R] * t90
         + (parameters[MY3R] * t139 - parameters[MX3R] * t121);
+    /* link j4: what it passes on */
     const ariane4_free_real_t t179 = t178 + (t10 * t123 - t9 * t129 - ARIANE4_FREE_C(0.1) * t177);
     const ariane4_free_real_t t180 = t8 * dq[2];
-    const ariane4_free_real_t t181 = ariane4_free_sign(t180);
-    const ariane4_free_real_t t182 = ARIANE4_FREE_C(188.12627071923498) * (t6 * t6);
+    const ariane4_free_real_t t181 = ariane4_free_sign(t180); /* joint j3: coulomb_friction */
+    const ariane4_free_real_t t182 = ARIANE4_FREE_C(188.12627071923498) * (t6 * t6); /* joint j3: drive */
     const ariane4_free_real_t t183 = t3 * t3;
     const ariane4_free_real_t t184 = ARIANE4_FREE_C(7124.375926654358) * t4 + t182 * t183;
     const ariane4_free_real_t t185 = t6 * t184;
@@ -366,16 +399,19 @@ int ariane4_free_forward_dynamics_derivatives(
         + parameters[IA3] * (t185 * t186);
     const ariane4_free_real_t t188 = ARIANE4_FREE_C(0.003) * t8;
     const ariane4_free_real_t t189 = input[2] * t188 + (t8 * t187 + t179) - t175 * t19;
+    /* link j4: what it passes on */
     const ariane4_free_real_t t190 = parameters[MX3R] * t140 - parameters[MY3R] * t90 + (t9 * t145
         - t10 * t146);
+    /* link j3: what it passes on */
     const ariane4_free_real_t t191 = t2 * (parameters[MY3R] * (t149 + t133) - parameters[MX3R] * t90 - t177);
-    const ariane4_free_real_t t192 = parameters[XY2] * (t161 - t114);
+    const ariane4_free_real_t t192 = parameters[XY2] * (t161 - t114); /* link j2: force and moment */
     const ariane4_free_real_t t193 = parameters[XX2R] * t119;
     const ariane4_free_real_t t194 = parameters[MX2R] * t118 + parameters[MY2] * t113;
+    /* link j3: what it passes on */
     const ariane4_free_real_t t195 = t193 - t192 - t194 - (t179 - ARIANE4_FREE_C(0.443) * (t1 * t190 + t191));
     const ariane4_free_real_t t196 = t29 * dq[1];
-    const ariane4_free_real_t t197 = ariane4_free_sign(t196);
-    const ariane4_free_real_t t198 = ARIANE4_FREE_C(104.12987373940295) * (t27 * t27);
+    const ariane4_free_real_t t197 = ariane4_free_sign(t196); /* joint j2: coulomb_friction */
+    const ariane4_free_real_t t198 = ARIANE4_FREE_C(104.12987373940295) * (t27 * t27); /* joint j2: drive */
     const ariane4_free_real_t t199 = t24 * t24;
     const ariane4_free_real_t t200 = ARIANE4_FREE_C(-2656.3065671641784) * t25 - t198 * t199;
     const ariane4_free_real_t t201 = t27 * t200;
@@ -393,18 +429,18 @@ int ariane4_free_forward_dynamics_derivatives(
     ddq[2] = t209;
     const ariane4_free_real_t t210 = ariane4_free_bounded(t175 * t18 + t72 * t207 + t38 * t208 + t19 * t209);
     ddq[3] = t210;
-    const ariane4_free_real_t t211 = t22 * t1 - t23 * t2;
+    const ariane4_free_real_t t211 = t22 * t1 - t23 * t2; /* link j3: motion */
     const ariane4_free_real_t t212 = t207 * t211;
     const ariane4_free_real_t t213 = t22 * t2 + t23 * t1;
     const ariane4_free_real_t t214 = dq[0] * t213;
     const ariane4_free_real_t t215 = t91 * t214;
     const ariane4_free_real_t t216 = t215 - t212;
     const ariane4_free_real_t t217 = t216 - t210;
-    const ariane4_free_real_t t218 = t9 * t214 - t101;
+    const ariane4_free_real_t t218 = t9 * t214 - t101; /* link j4: motion */
     const ariane4_free_real_t t219 = t95 + t10 * t214;
     const ariane4_free_real_t t220 = t218 * t219;
     const ariane4_free_real_t t221 = t208 + t209;
-    const ariane4_free_real_t t222 = dq[0] * t211;
+    const ariane4_free_real_t t222 = dq[0] * t211; /* link j3: motion */
     const ariane4_free_real_t t223 = t214 * t222;
     const ariane4_free_real_t t224 = t223 + t221;
     const ariane4_free_real_t t225 = t207 * t213;
@@ -415,7 +451,7 @@ int ariane4_free_forward_dynamics_derivatives(
     const ariane4_free_real_t t230 = t10 * t224 + t9 * t228;
     const ariane4_free_real_t t231 = parameters[ZZ4] * t217 - parameters[XX4R] * t220
         + parameters[YZ4R] * t229 + parameters[XZ4R] * t230;
-    const ariane4_free_real_t t232 = t218 * t218;
+    const ariane4_free_real_t t232 = t218 * t218; /* link j4: motion */
     const ariane4_free_real_t t233 = t219 * t219;
     const ariane4_free_real_t t234 = ARIANE4_FREE_C(0.116) * t207;
     const ariane4_free_real_t t235 = t23 * t207;
@@ -426,8 +462,8 @@ int ariane4_free_forward_dynamics_derivatives(
     const ariane4_free_real_t t240 = t119 + t208;
     const ariane4_free_real_t t241 = t118 + ARIANE4_FREE_C(0.443) * t240;
     const ariane4_free_real_t t242 = t138 + t1 * t241;
-    const ariane4_free_real_t t243 = t222 * t222;
-    const ariane4_free_real_t t244 = t133 + t243;
+    const ariane4_free_real_t t243 = t222 * t222; /* link j3: motion */
+    const ariane4_free_real_t t244 = t133 + t243; /* link j4: motion */
     const ariane4_free_real_t t245 = ARIANE4_FREE_C(0.1) * t244 + t242;
     const ariane4_free_real_t t246 = t10 * t245 - t9 * t239;
     const ariane4_free_real_t t247 = t9 * t245 + t10 * t239;
@@ -440,11 +476,11 @@ int ariane4_free_forward_dynamics_derivatives(
     const ariane4_free_real_t t253 = t220 + t217;
     const ariane4_free_real_t t254 = parameters[MY4] * (t232 + t251) + parameters[MX4] * t253;
     const ariane4_free_real_t t255 = t9 * t254 - t10 * t252;
-    const ariane4_free_real_t t256 = t214 * t214;
+    const ariane4_free_real_t t256 = t214 * t214; /* link j3: motion */
     const ariane4_free_real_t t257 = parameters[XZ3] * (t256 - t133) + (t148 * t215 + parameters[XY3R] * t228
         - parameters[YZ3] * t224);
     const ariane4_free_real_t t258 = t257 - parameters[MX3R] * t237 + (t248 + ARIANE4_FREE_C(-0.1) * t255);
-    const ariane4_free_real_t t259 = t219 * t250;
+    const ariane4_free_real_t t259 = t219 * t250; /* link j4: motion */
     const ariane4_free_real_t t260 = t259 + t230;
     const ariane4_free_real_t t261 = t218 * t250;
     const ariane4_free_real_t t262 = t261 + (t261 + t229);
@@ -474,7 +510,7 @@ int ariane4_free_forward_dynamics_derivatives(
         + ARIANE4_FREE_C(0.443) * t277);
     const ariane4_free_real_t t281 = t23 * t280 - t22 * t276
         + ARIANE4_FREE_C(0.116) * (parameters[MX2R] * t236 + parameters[MY2] * t278 + t277);
-    const ariane4_free_real_t t282 = ARIANE4_FREE_C(0.06434139546481742) * t63 / t61;
+    const ariane4_free_real_t t282 = ARIANE4_FREE_C(0.06434139546481742) * t63 / t61; /* joint j1: drive */
     const ariane4_free_real_t t283 = ariane4_free_select(t63, t63, ARIANE4_FREE_C(1.0));
     const ariane4_free_real_t t284 = ARIANE4_FREE_C(1.0) / t283;
     const ariane4_free_real_t t285 = ARIANE4_FREE_C(0.037468) * t61;
@@ -511,6 +547,7 @@ int ariane4_free_forward_dynamics_derivatives(
     const ariane4_free_real_t t308 = parameters[XX4R] + t307;
     const ariane4_free_real_t t309 = t250 * t308 - parameters[XZ4R] * t218;
     const ariane4_free_real_t t310 = parameters[YZ4R] * t219 + t250 * t307;
+    /* link j4: inertia, momentum beyond */
     const ariane4_free_real_t t311 = t9 * (t304 + t306) + t10 * (t309 - t310);
     const ariane4_free_real_t t312 = t9 * t311;
     const ariane4_free_real_t t313 = parameters[MY4] * t250;
@@ -534,20 +571,22 @@ int ariane4_free_forward_dynamics_derivatives(
     const ariane4_free_real_t t331 = parameters[XY4] * t218 + t219 * t308;
     const ariane4_free_real_t t332 = t218 * t307 + parameters[XY4] * t219;
     const ariane4_free_real_t t333 = parameters[MY4] * t218 + parameters[MX4] * t219;
-    const ariane4_free_real_t t334 = ARIANE4_FREE_C(0.1) * t91;
+    const ariane4_free_real_t t334 = ARIANE4_FREE_C(0.1) * t91; /* link j4: velocity of its origin */
+    /* link j4: inertia, momentum beyond */
     const ariane4_free_real_t t335 = t10 * t332 - t9 * t331 + (ARIANE4_FREE_C(-0.1) * t333 + t13 * t334);
     const ariane4_free_real_t t336 = parameters[XX3R] - t329;
     const ariane4_free_real_t t337 = t91 * t336 - parameters[XZ3] * t214 - t335;
+    /* link j3: inertia, momentum beyond */
     const ariane4_free_real_t t338 = t2 * (t322 - t325) + t1 * (t330 - t337);
     const ariane4_free_real_t t339 = t2 * t338;
-    const ariane4_free_real_t t340 = parameters[MY3R] * t91 + t315;
+    const ariane4_free_real_t t340 = parameters[MY3R] * t91 + t315; /* link j4: inertia, momentum beyond */
     const ariane4_free_real_t t341 = parameters[MX3R] * t91 + t333;
-    const ariane4_free_real_t t342 = t2 * t340 + t1 * t341;
+    const ariane4_free_real_t t342 = t2 * t340 + t1 * t341; /* link j3: inertia, momentum beyond */
     const ariane4_free_real_t t343 = ARIANE4_FREE_C(0.443) * t342;
-    const ariane4_free_real_t t344 = ARIANE4_FREE_C(0.443) * dq[1];
-    const ariane4_free_real_t t345 = t53 * t344;
-    const ariane4_free_real_t t346 = ARIANE4_FREE_C(0.443) * t87;
-    const ariane4_free_real_t t347 = t35 * t346;
+    const ariane4_free_real_t t344 = ARIANE4_FREE_C(0.443) * dq[1]; /* link j3: velocity of its origin */
+    const ariane4_free_real_t t345 = t53 * t344; /* link j3: inertia, momentum beyond */
+    const ariane4_free_real_t t346 = ARIANE4_FREE_C(0.443) * t87; /* link j3: velocity of its origin */
+    const ariane4_free_real_t t347 = t35 * t346; /* link j3: inertia, momentum beyond */
     const ariane4_free_real_t t348 = t345 + t347 - t343;
     const ariane4_free_real_t t349 = parameters[XZ2R] * t87;
     const ariane4_free_real_t t350 = parameters[XY2] * dq[1];
@@ -561,41 +600,46 @@ int ariane4_free_forward_dynamics_derivatives(
     const ariane4_free_real_t t358 = parameters[XX2R] + t355;
     const ariane4_free_real_t t359 = dq[1] * t358 - parameters[XZ2R] * t86 + (t337 + t354
         + (ARIANE4_FREE_C(0.443) * t357 - t31 * t344));
+    /* link j2: inertia, momentum beyond */
     const ariane4_free_real_t t360 = t23 * (t23 * (t353 - t351) + t22 * (t356 + t359));
-    const ariane4_free_real_t t361 = parameters[MY2] * dq[1] + t342;
+    const ariane4_free_real_t t361 = parameters[MY2] * dq[1] + t342; /* link j3: inertia, momentum beyond */
     const ariane4_free_real_t t362 = t357 - parameters[MX2R] * dq[1];
+    /* link j2: inertia, momentum beyond */
     const ariane4_free_real_t t363 = ARIANE4_FREE_C(0.116) * (t22 * t362 - t23 * t361)
         + t35 * (ARIANE4_FREE_C(0.116) * dq[0]);
     const ariane4_free_real_t t364 = ARIANE4_FREE_C(250.0) * (t66 * parameters[FV1]
         + parameters[IA1] * (t170 * (ARIANE4_FREE_C(2.0) * dq[0])));
     const ariane4_free_real_t t365 = t364 + t282 * (ARIANE4_FREE_C(2.0) * (t351 + t360 + t363));
     const ariane4_free_real_t t366 = t203 * t295;
-    const ariane4_free_real_t t367 = t10 * t311;
+    const ariane4_free_real_t t367 = t10 * t311; /* link j4: inertia, momentum beyond */
     const ariane4_free_real_t t368 = t10 * t313 - t9 * t314;
     const ariane4_free_real_t t369 = parameters[XY3R] * t214 + t222 * t336 - (t309 - t367
         - (ARIANE4_FREE_C(0.1) * t368 - t13 * t317));
     const ariane4_free_real_t t370 = t214 * t329 - parameters[XY3R] * t222 - (t10 * t327 - t9 * t328);
     const ariane4_free_real_t t371 = parameters[MY3R] * t214 + parameters[MX3R] * t222 + t368;
+    /* link j3: inertia, momentum beyond */
     const ariane4_free_real_t t372 = t2 * t369 + t1 * t370 - (ARIANE4_FREE_C(0.443) * t371 - t31 * t346);
+    /* link j2: derivatives */
     const ariane4_free_real_t t373 = ARIANE4_FREE_C(2.0) * (parameters[XY2] * t86 - t87 * t358 + t372);
+    /* link j3: inertia, momentum beyond */
     const ariane4_free_real_t t374 = parameters[XY2] * t87 - t86 * t355 - (t1 * t369 - t2 * t370
         + t53 * t346);
-    const ariane4_free_real_t t375 = ARIANE4_FREE_C(2.0) * t374;
+    const ariane4_free_real_t t375 = ARIANE4_FREE_C(2.0) * t374; /* link j2: derivatives */
     const ariane4_free_real_t t376 = ARIANE4_FREE_C(-0.232) * dq[0];
     const ariane4_free_real_t t377 = t22 * t373 - t23 * t375 - (t23 * t56 + t22 * t57) * t376;
-    const ariane4_free_real_t t378 = ARIANE4_FREE_C(0.03137188092799786) * t26 / t24;
+    const ariane4_free_real_t t378 = ARIANE4_FREE_C(0.03137188092799786) * t26 / t24; /* joint j2: drive */
     const ariane4_free_real_t t379 = t378 * t377;
     const ariane4_free_real_t t380 = ariane4_free_bounded(t188 * t297);
-    const ariane4_free_real_t t381 = ARIANE4_FREE_C(2.0) * t369;
+    const ariane4_free_real_t t381 = ARIANE4_FREE_C(2.0) * t369; /* link j3: derivatives */
     const ariane4_free_real_t t382 = ARIANE4_FREE_C(2.0) * t370;
-    const ariane4_free_real_t t383 = ARIANE4_FREE_C(0.886) * t87;
-    const ariane4_free_real_t t384 = t2 * t381 + t1 * t382 + t31 * t383;
+    const ariane4_free_real_t t383 = ARIANE4_FREE_C(0.886) * t87; /* link j4: derivatives */
+    const ariane4_free_real_t t384 = t2 * t381 + t1 * t382 + t31 * t383; /* link j3: derivatives */
     const ariane4_free_real_t t385 = t1 * t381 - t2 * t382 + t53 * t383;
     const ariane4_free_real_t t386 = t22 * t384 + t23 * t385 - (t23 * t53 + t22 * t31) * t376;
-    const ariane4_free_real_t t387 = ARIANE4_FREE_C(0.046787723832235825) * t5 / t3;
+    const ariane4_free_real_t t387 = ARIANE4_FREE_C(0.046787723832235825) * t5 / t3; /* joint j3: drive */
     const ariane4_free_real_t t388 = t387 * t386;
     const ariane4_free_real_t t389 = ARIANE4_FREE_C(-5.0) * t300;
-    const ariane4_free_real_t t390 = ARIANE4_FREE_C(2.0) * t331;
+    const ariane4_free_real_t t390 = ARIANE4_FREE_C(2.0) * t331; /* link j4: derivatives */
     const ariane4_free_real_t t391 = ARIANE4_FREE_C(2.0) * t332;
     const ariane4_free_real_t t392 = ARIANE4_FREE_C(0.2) * t91;
     const ariane4_free_real_t t393 = t10 * t391 - t9 * t390 + t13 * t392;
@@ -603,8 +647,8 @@ int ariane4_free_forward_dynamics_derivatives(
     const ariane4_free_real_t t395 = t394 + t35 * (ARIANE4_FREE_C(0.2) * t222);
     const ariane4_free_real_t t396 = ARIANE4_FREE_C(-0.886) * dq[1];
     const ariane4_free_real_t t397 = t2 * t393 + t1 * t395 + (t13 * t396 + t36 * t383);
-    const ariane4_free_real_t t398 = t2 * t35;
-    const ariane4_free_real_t t399 = t1 * t393 - t2 * t395 - t398 * t383;
+    const ariane4_free_real_t t398 = t2 * t35; /* link j4: column of the mass matrix */
+    const ariane4_free_real_t t399 = t1 * t393 - t2 * t395 - t398 * t383; /* link j4: derivatives */
     const ariane4_free_real_t t400 = t22 * t397 + t23 * t399 - (t22 * t36 - t23 * t398) * t376;
     const ariane4_free_real_t t401 = ARIANE4_FREE_C(0.2) * t400;
     const ariane4_free_real_t t402 = t365 * t294 + t379 * t366 + t388 * t380 + t401 * t389;
@@ -632,7 +676,7 @@ int ariane4_free_forward_dynamics_derivatives(
     ddq_by_input[4] = t296;
     ddq_by_input[8] = t298;
     ddq_by_input[12] = t301;
-    const ariane4_free_real_t t419 = t161 + t114;
+    const ariane4_free_real_t t419 = t161 + t114; /* link j3: motion */
     const ariane4_free_real_t t420 = ARIANE4_FREE_C(2.0) * t87;
     const ariane4_free_real_t t421 = ARIANE4_FREE_C(-2.0) * t86;
     const ariane4_free_real_t t422 = t420 * t351 + t421 * t356 + (t79 * t419 - (t52 * t235 - t54 * t273));
@@ -684,27 +728,34 @@ int ariane4_free_forward_dynamics_derivatives(
     const ariane4_free_real_t t455 = t417 * t451 - (t414 * t447 - t301 * t426 + t415 * t449);
     ddq_by_q[13] = t455;
     const ariane4_free_real_t t456 = t329 - parameters[ZZ3R];
+    /* link j4: inertia, momentum beyond */
     const ariane4_free_real_t t457 = t222 * t456 - parameters[YZ3] * t91 + (t310 + t367);
     const ariane4_free_real_t t458 = parameters[XZ3] * t91 + t214 * t456 - (t10 * t331 + t9 * t332
         + t35 * t334);
     const ariane4_free_real_t t459 = parameters[ZZ2R] + t355;
+    /* link j3: inertia, momentum beyond */
     const ariane4_free_real_t t460 = t87 * t459 - parameters[YZ2] * dq[1] + (t2 * t457 - t1 * t458);
+    /* link j2: derivatives */
     const ariane4_free_real_t t461 = t22 * (ARIANE4_FREE_C(2.0) * t460 + (t52 * t420 + t54 * t421));
+    /* link j3: inertia, momentum beyond */
     const ariane4_free_real_t t462 = parameters[XZ2R] * dq[1] - t86 * t459 + (t1 * t457 + t2 * t458
         + t35 * t344);
+    /* link j2: derivatives */
     const ariane4_free_real_t t463 = t23 * (ARIANE4_FREE_C(2.0) * t462 + (t54 * t420 + t51 * t421));
     const ariane4_free_real_t t464 = t461 + t463 + ARIANE4_FREE_C(0.116) * (t57 * t421 - t56 * t420);
     const ariane4_free_real_t t465 = t282 * t464;
+    /* link j4: inertia, momentum beyond */
     const ariane4_free_real_t t466 = t320 + t324 + (t319 - (t304 - t312 + t318));
+    /* link j2: derivatives */
     const ariane4_free_real_t t467 = ARIANE4_FREE_C(2.0) * (t349 - t352 - (t348 + (t466 - t347)))
         - ARIANE4_FREE_C(2.0) * (t80 * t86 - t79 * t87);
     const ariane4_free_real_t t468 = ARIANE4_FREE_C(83.33333333333333) * (t29 * parameters[FV2]
         + parameters[IA2] * (t201 * (ARIANE4_FREE_C(2.0) * dq[1])));
     const ariane4_free_real_t t469 = t468 - t378 * t467;
-    const ariane4_free_real_t t470 = ARIANE4_FREE_C(2.0) * t466;
+    const ariane4_free_real_t t470 = ARIANE4_FREE_C(2.0) * t466; /* link j3: derivatives */
     const ariane4_free_real_t t471 = t470 - t53 * t396 + ARIANE4_FREE_C(2.0) * (t76 * t86 - t75 * t87);
     const ariane4_free_real_t t472 = t387 * t471;
-    const ariane4_free_real_t t473 = t10 * t390 + t9 * t391 + t35 * t392;
+    const ariane4_free_real_t t473 = t10 * t390 + t9 * t391 + t35 * t392; /* link j4: derivatives */
     const ariane4_free_real_t t474 = t473 + t398 * t396 + ARIANE4_FREE_C(2.0) * (t70 * t86 - t69 * t87);
     const ariane4_free_real_t t475 = ARIANE4_FREE_C(0.2) * t474;
     const ariane4_free_real_t t476 = t465 * t294 + t469 * t366 + t472 * t380 + t475 * t389;
@@ -719,7 +770,7 @@ int ariane4_free_forward_dynamics_derivatives(
     ddq_by_input[5] = t403;
     ddq_by_input[9] = -t409;
     ddq_by_input[13] = t414;
-    const ariane4_free_real_t t480 = t256 + t243;
+    const ariane4_free_real_t t480 = t256 + t243; /* link j4: motion */
     const ariane4_free_real_t t481 = ARIANE4_FREE_C(2.0) * t222;
     const ariane4_free_real_t t482 = ARIANE4_FREE_C(2.0) * t214;
     const ariane4_free_real_t t483 = t482 * t330 - t481 * t322 + (t73 * t480 + (t46 * t212 + t48 * t225));
@@ -764,6 +815,7 @@ int ariane4_free_forward_dynamics_derivatives(
     ddq_by_q[10] = t514;
     const ariane4_free_real_t t515 = t301 * t491 + t414 * t497 + t415 * t509 + t417 * t511;
     ddq_by_q[14] = t515;
+    /* link j3: derivatives */
     const ariane4_free_real_t t516 = ARIANE4_FREE_C(2.0) * t457 - (t46 * t481 + t48 * t482);
     const ariane4_free_real_t t517 = ARIANE4_FREE_C(2.0) * t458 - (t48 * t481 + t45 * t482);
     const ariane4_free_real_t t518 = parameters[MY3R] * t481 - t30 * t482;
@@ -792,7 +844,7 @@ int ariane4_free_forward_dynamics_derivatives(
     ddq_by_input[6] = t405;
     ddq_by_input[10] = t410;
     ddq_by_input[14] = t415;
-    const ariane4_free_real_t t533 = t232 + t233;
+    const ariane4_free_real_t t533 = t232 + t233; /* link j4: force and moment */
     const ariane4_free_real_t t534 = ARIANE4_FREE_C(2.0) * t219;
     const ariane4_free_real_t t535 = ARIANE4_FREE_C(2.0) * t218;
     const ariane4_free_real_t t536 = t534 * t304 + t535 * t310 + (parameters[XY4] * t230
@@ -827,6 +879,7 @@ int ariane4_free_forward_dynamics_derivatives(
     ddq_by_q[11] = t558;
     const ariane4_free_real_t t559 = t301 * t549 + t414 * t553 - t415 * t554 + t417 * t555;
     ddq_by_q[15] = t559;
+    /* link j4: derivatives */
     const ariane4_free_real_t t560 = ARIANE4_FREE_C(-2.0) * t327 - (parameters[XY4] * t535
         + parameters[XX4R] * t534);
     const ariane4_free_real_t t561 = parameters[XY4] * t534 + ARIANE4_FREE_C(-2.0) * t328;

@@ -7,7 +7,7 @@
  * Arm ariane4_free, description 79391f27012d8ce4.
  * SPDX-License-Identifier: 0BSD
  *
- * Operations: 2111 (1198 mul, 909 add, 4 neg), 16 div, 3 sqrt, 8 trig, 7 other.
+ * Operations: 2111 (1198 mul, 909 add, 4 neg), 16 div, 3 sqrt, 8 trig, 7 other calls (sign, select and the like).
  *
  * @param[in]   q             [4]   [rad]                    joint coordinates; norm at most 10000
  * @param[in]   dq            [4]   [rad/s]                  joint velocities; norm at most 100000
@@ -15,9 +15,9 @@
  *                                                           norm at most 1e+09
  * @param[in]   parameters    [52]                           standard parameters; norm at most 1e+09
  * @param[out]  ddq           [4]   [rad/s^2]                joint accelerations
- * @param[out]  ddq_by_q      [16]  [(rad/s^2) per (rad)]    d ddq / d q; 4 x 4, row-major
+ * @param[out]  ddq_by_q      [16]  [(rad/s^2) per rad]      d ddq / d q; 4 x 4, row-major
  * @param[out]  ddq_by_dq     [16]  [(rad/s^2) per (rad/s)]  d ddq / d dq; 4 x 4, row-major
- * @param[out]  ddq_by_input  [16]  [(rad/s^2) per (A)]      d ddq / d input; 4 x 4, row-major
+ * @param[out]  ddq_by_input  [16]  [(rad/s^2) per A]        d ddq / d input; 4 x 4, row-major
  *
  * Coordinates:
  *
@@ -83,11 +83,11 @@
  */
 #include "ariane4_free_private.h"
 
-#if ARIANE4_FREE_GENERATION != 0x261051E4UL
+#if ARIANE4_FREE_GENERATION != 0x6EBE5535UL
 #error "ariane4_free.h and ariane4_free_forward_dynamics_derivatives_standard.c are of different generations: generate the arm again"
 #endif
 
-int ariane4_free_forward_dynamics_derivatives_standard(
+ariane4_free_status_t ariane4_free_forward_dynamics_derivatives_standard(
     const ariane4_free_real_t q[ARIANE4_FREE_N_JOINTS],
     const ariane4_free_real_t dq[ARIANE4_FREE_N_JOINTS],
     const ariane4_free_real_t input[ARIANE4_FREE_N_JOINTS],
@@ -100,7 +100,7 @@ int ariane4_free_forward_dynamics_derivatives_standard(
     enum { XX1 = 0, XY1, XZ1, YY1, YZ1, ZZ1, MX1, MY1, MZ1, M1, XX2, XY2, XZ2, YY2, YZ2, ZZ2, MX2, MY2, MZ2,
         M2, XX3, XY3, XZ3, YY3, YZ3, ZZ3, MX3, MY3, MZ3, M3, XX4, XY4, XZ4, YY4, YZ4, ZZ4, MX4, MY4, MZ4, M4,
         FV1, FC1, IA1, FV2, FC2, IA2, FV3, FC3, IA3, FV4, FC4, IA4 };
-    int status = ARIANE4_FREE_STATUS_OK;
+    ariane4_free_status_t status = ARIANE4_FREE_STATUS_OK;
 
     if (!ariane4_free_within_joints(q, ARIANE4_FREE_C(1.0e8))
         || !ariane4_free_within_joints(dq, ARIANE4_FREE_C(1.0e10))
@@ -138,6 +138,7 @@ int ariane4_free_forward_dynamics_derivatives_standard(
         ariane4_free_zero(ddq_by_input, 16);
         return ARIANE4_FREE_STATUS_PIVOT;
     }
+    /* joint j3: drive */
     const ariane4_free_real_t t3 = ARIANE4_FREE_C(0.06366143813161289) * t1
         + ARIANE4_FREE_C(0.9979715533496006) * t2;
     const ariane4_free_real_t t4 = ARIANE4_FREE_C(0.06366143813161289) * t2
@@ -147,7 +148,9 @@ int ariane4_free_forward_dynamics_derivatives_standard(
     const ariane4_free_real_t t6 = ARIANE4_FREE_C(1.0) / t5;
     const ariane4_free_real_t t7 = ARIANE4_FREE_C(7124.375926654358) * t6;
     const ariane4_free_real_t t8 = t3 * t7;
+    /* link j4: column of the mass matrix */
     const ariane4_free_real_t t11 = t9 * parameters[MY4] - t10 * parameters[MX4];
+    /* link j4: inertia of it and all beyond */
     const ariane4_free_real_t t12 = ARIANE4_FREE_C(0.1) * parameters[M4];
     const ariane4_free_real_t t13 = ARIANE4_FREE_C(0.1) * (t12 + ARIANE4_FREE_C(2.0) * t11);
     const ariane4_free_real_t t14 = ARIANE4_FREE_C(0.436) * parameters[M4];
@@ -157,6 +160,7 @@ int ariane4_free_forward_dynamics_derivatives_standard(
     const ariane4_free_real_t t18 = t10 * t17;
     const ariane4_free_real_t t19 = parameters[ZZ3] + (parameters[XX4] - t18 + (t13 + t15));
     const ariane4_free_real_t t20 = t19 + t8 * t8 * parameters[IA3];
+    /* link j4: column of the mass matrix */
     const ariane4_free_real_t t21 = t10 * parameters[MY4] + t9 * parameters[MX4];
     const ariane4_free_real_t t22 = ARIANE4_FREE_C(0.436) * t21 - (t9 * parameters[XZ4]
         + t10 * parameters[YZ4]);
@@ -178,6 +182,7 @@ int ariane4_free_forward_dynamics_derivatives_standard(
         ariane4_free_zero(ddq_by_input, 16);
         return ARIANE4_FREE_STATUS_PIVOT;
     }
+    /* joint j2: drive */
     const ariane4_free_real_t t29 = ARIANE4_FREE_C(0.8305958991958126) * t27
         + ARIANE4_FREE_C(0.5568756164881881) * t28;
     const ariane4_free_real_t t30 = ARIANE4_FREE_C(-0.8305958991958126) * t28
@@ -187,20 +192,22 @@ int ariane4_free_forward_dynamics_derivatives_standard(
     const ariane4_free_real_t t32 = ARIANE4_FREE_C(1.0) / t31;
     const ariane4_free_real_t t33 = ARIANE4_FREE_C(2656.3065671641784) * t32;
     const ariane4_free_real_t t34 = t29 * t33;
-    const ariane4_free_real_t t35 = t11 + t12;
+    const ariane4_free_real_t t35 = t11 + t12; /* link j4: inertia of it and all beyond */
     const ariane4_free_real_t t36 = parameters[MX3] - t35;
     const ariane4_free_real_t t37 = parameters[MZ4] + t14;
     const ariane4_free_real_t t38 = parameters[MY3] + t37;
-    const ariane4_free_real_t t39 = t2 * t36 - t1 * t38;
+    const ariane4_free_real_t t39 = t2 * t36 - t1 * t38; /* link j3: column of the mass matrix */
+    /* link j4: inertia of it and all beyond */
     const ariane4_free_real_t t40 = parameters[M3] + parameters[M4];
-    const ariane4_free_real_t t41 = ARIANE4_FREE_C(0.443) * t40;
+    const ariane4_free_real_t t41 = ARIANE4_FREE_C(0.443) * t40; /* link j3: inertia of it and all beyond */
     const ariane4_free_real_t t42 = ARIANE4_FREE_C(0.443) * (t41 + ARIANE4_FREE_C(2.0) * t39);
     const ariane4_free_real_t t43 = parameters[ZZ2] + (t19 + t42);
     const ariane4_free_real_t t44 = t43 + t34 * t34 * parameters[IA2];
-    const ariane4_free_real_t t45 = t1 * t21;
+    const ariane4_free_real_t t45 = t1 * t21; /* link j4: column of the mass matrix */
     const ariane4_free_real_t t46 = ARIANE4_FREE_C(0.443) * t45 - t22;
     const ariane4_free_real_t t47 = t46 * t23;
     const ariane4_free_real_t t48 = ARIANE4_FREE_C(-1.0) / t25;
+    /* link j3: column of the mass matrix */
     const ariane4_free_real_t t49 = ARIANE4_FREE_C(-0.443) * t39 - t19;
     const ariane4_free_real_t t50 = t49 - t46 * t24;
     const ariane4_free_real_t t51 = t50 * t48;
@@ -220,23 +227,31 @@ int ariane4_free_forward_dynamics_derivatives_standard(
         ariane4_free_zero(ddq_by_input, 16);
         return ARIANE4_FREE_STATUS_PIVOT;
     }
+    /* link j4: inertia of it and all beyond */
     const ariane4_free_real_t t54 = parameters[XX3] + (parameters[YY4] + t18 + t15);
     const ariane4_free_real_t t55 = parameters[YY3] + (parameters[ZZ4] + t13);
+    /* link j4: column of the mass matrix */
     const ariane4_free_real_t t56 = t10 * parameters[XZ4] - t9 * parameters[YZ4];
+    /* link j4: inertia of it and all beyond */
     const ariane4_free_real_t t57 = parameters[XY3] + (t56 + (ARIANE4_FREE_C(0.1) * parameters[MZ4]
         + ARIANE4_FREE_C(0.436) * t35));
+    /* link j3: inertia of it and all beyond */
     const ariane4_free_real_t t58 = t2 * (t54 - t55) - t57 * (ARIANE4_FREE_C(2.0) * t1);
     const ariane4_free_real_t t59 = t2 * t58;
     const ariane4_free_real_t t60 = parameters[XX2] + (t55 + t59);
     const ariane4_free_real_t t61 = parameters[YY2] + (t54 - t59 + t42);
-    const ariane4_free_real_t t62 = t2 * t38 + t1 * t36;
+    const ariane4_free_real_t t62 = t2 * t38 + t1 * t36; /* link j3: column of the mass matrix */
+    /* link j3: inertia of it and all beyond */
     const ariane4_free_real_t t63 = parameters[XY2] + (t57 + t1 * t58 + ARIANE4_FREE_C(-0.443) * t62);
+    /* link j2: inertia of it and all beyond */
     const ariane4_free_real_t t64 = t28 * (t28 * (t61 - t60) + t63 * (ARIANE4_FREE_C(2.0) * t27));
-    const ariane4_free_real_t t65 = parameters[MY2] + t62;
+    const ariane4_free_real_t t65 = parameters[MY2] + t62; /* link j3: inertia of it and all beyond */
     const ariane4_free_real_t t66 = t39 + t41;
     const ariane4_free_real_t t67 = parameters[MX2] + t66;
+    /* link j2: inertia of it and all beyond */
     const ariane4_free_real_t t68 = ARIANE4_FREE_C(0.116) * (parameters[M2] + t40)
         + ARIANE4_FREE_C(2.0) * (t28 * t67 - t27 * t65);
+    /* joint j1: drive */
     const ariane4_free_real_t t71 = ARIANE4_FREE_C(0.28217402066925895) * t69
         + ARIANE4_FREE_C(-0.9593632378089879) * t70;
     const ariane4_free_real_t t72 = ARIANE4_FREE_C(0.28217402066925895) * t70
@@ -248,19 +263,22 @@ int ariane4_free_forward_dynamics_derivatives_standard(
     const ariane4_free_real_t t76 = t71 * t75;
     const ariane4_free_real_t t77 = parameters[ZZ1] + (t60 + t64 + ARIANE4_FREE_C(0.116) * t68)
         + t76 * t76 * parameters[IA1];
+    /* link j4: column of the mass matrix */
     const ariane4_free_real_t t78 = t56 + ARIANE4_FREE_C(0.436) * t11;
     const ariane4_free_real_t t79 = parameters[ZZ4] + ARIANE4_FREE_C(0.1) * t11;
     const ariane4_free_real_t t80 = t2 * t78 - t1 * t79;
     const ariane4_free_real_t t81 = t1 * t78 + t2 * t79 - ARIANE4_FREE_C(0.443) * t11;
     const ariane4_free_real_t t82 = t27 * t80 + t28 * t81 - ARIANE4_FREE_C(0.116) * t11;
     const ariane4_free_real_t t83 = t82 * t23;
+    /* link j4: inertia of it and all beyond */
     const ariane4_free_real_t t84 = parameters[XY4] + t9 * t17 + ARIANE4_FREE_C(0.1) * t21 - parameters[XZ3];
     const ariane4_free_real_t t85 = parameters[YZ3] + t22;
-    const ariane4_free_real_t t86 = t2 * t84 + t1 * t85;
+    const ariane4_free_real_t t86 = t2 * t84 + t1 * t85; /* link j3: column of the mass matrix */
     const ariane4_free_real_t t87 = t1 * t84 - t2 * t85;
     const ariane4_free_real_t t88 = t27 * t86 + t28 * t87 + t82 * t24;
     const ariane4_free_real_t t89 = t88 * t48;
-    const ariane4_free_real_t t90 = t21 - parameters[MZ3];
+    const ariane4_free_real_t t90 = t21 - parameters[MZ3]; /* link j4: inertia of it and all beyond */
+    /* link j3: inertia of it and all beyond */
     const ariane4_free_real_t t91 = t86 + ARIANE4_FREE_C(-0.443) * t90 - parameters[XZ2];
     const ariane4_free_real_t t92 = t87 - parameters[YZ2];
     const ariane4_free_real_t t93 = t82 * t47 - (t27 * t91 + t28 * t92) + t88 * t51;
@@ -282,18 +300,18 @@ int ariane4_free_forward_dynamics_derivatives_standard(
         ariane4_free_zero(ddq_by_input, 16);
         return ARIANE4_FREE_STATUS_PIVOT;
     }
-    const ariane4_free_real_t t98 = dq[0] * dq[0];
-    const ariane4_free_real_t t99 = ARIANE4_FREE_C(0.116) * t98;
+    const ariane4_free_real_t t98 = dq[0] * dq[0]; /* link j1: motion */
+    const ariane4_free_real_t t99 = ARIANE4_FREE_C(0.116) * t98; /* link j2: motion */
     const ariane4_free_real_t t100 = ARIANE4_FREE_C(9.81) * t27 - t28 * t99;
     const ariane4_free_real_t t101 = t28 * dq[0];
     const ariane4_free_real_t t102 = t101 * t101;
     const ariane4_free_real_t t103 = dq[1] * dq[1];
-    const ariane4_free_real_t t104 = t100 + ARIANE4_FREE_C(-0.443) * (t102 + t103);
+    const ariane4_free_real_t t104 = t100 + ARIANE4_FREE_C(-0.443) * (t102 + t103); /* link j3: motion */
     const ariane4_free_real_t t105 = t1 * t104;
-    const ariane4_free_real_t t106 = t27 * t99 + ARIANE4_FREE_C(9.81) * t28;
+    const ariane4_free_real_t t106 = t27 * t99 + ARIANE4_FREE_C(9.81) * t28; /* link j2: motion */
     const ariane4_free_real_t t107 = t27 * dq[0];
     const ariane4_free_real_t t108 = t107 * t101;
-    const ariane4_free_real_t t109 = ARIANE4_FREE_C(-0.443) * t108 - t106;
+    const ariane4_free_real_t t109 = ARIANE4_FREE_C(-0.443) * t108 - t106; /* link j3: motion */
     const ariane4_free_real_t t110 = t105 + t2 * t109;
     const ariane4_free_real_t t111 = t2 * t107 + t1 * t101;
     const ariane4_free_real_t t112 = t2 * t101 - t1 * t107;
@@ -301,17 +319,18 @@ int ariane4_free_forward_dynamics_derivatives_standard(
     const ariane4_free_real_t t114 = t111 * t111;
     const ariane4_free_real_t t115 = dq[1] + dq[2];
     const ariane4_free_real_t t116 = t115 * t115;
-    const ariane4_free_real_t t117 = t116 + t114;
+    const ariane4_free_real_t t117 = t116 + t114; /* link j4: motion */
     const ariane4_free_real_t t118 = t110 + (ARIANE4_FREE_C(0.1) * t113 + ARIANE4_FREE_C(0.436) * t117);
-    const ariane4_free_real_t t119 = t2 * t104;
+    const ariane4_free_real_t t119 = t2 * t104; /* link j3: motion */
     const ariane4_free_real_t t120 = t1 * t109 - t119;
     const ariane4_free_real_t t121 = t112 * t112;
-    const ariane4_free_real_t t122 = t116 + t121;
+    const ariane4_free_real_t t122 = t116 + t121; /* link j4: motion */
     const ariane4_free_real_t t123 = t120 - (ARIANE4_FREE_C(0.1) * t122 - ARIANE4_FREE_C(-0.436) * t113);
-    const ariane4_free_real_t t124 = t115 * t111;
+    const ariane4_free_real_t t124 = t115 * t111; /* link j3: motion */
     const ariane4_free_real_t t125 = t115 * t112;
-    const ariane4_free_real_t t126 = dq[1] * t107;
-    const ariane4_free_real_t t127 = ARIANE4_FREE_C(0.886) * t126;
+    const ariane4_free_real_t t126 = dq[1] * t107; /* link j2: motion */
+    const ariane4_free_real_t t127 = ARIANE4_FREE_C(0.886) * t126; /* link j3: motion */
+    /* link j4: motion */
     const ariane4_free_real_t t128 = t127 - (ARIANE4_FREE_C(0.2) * t124 + ARIANE4_FREE_C(-0.872) * t125);
     const ariane4_free_real_t t129 = t9 * t123 - t10 * t128;
     const ariane4_free_real_t t130 = ARIANE4_FREE_C(2.0) * t125;
@@ -321,28 +340,30 @@ int ariane4_free_forward_dynamics_derivatives_standard(
     const ariane4_free_real_t t134 = dq[3] + t112;
     const ariane4_free_real_t t135 = t133 * t134;
     const ariane4_free_real_t t136 = t131 - t135;
-    const ariane4_free_real_t t137 = parameters[ZZ4] - parameters[YY4];
-    const ariane4_free_real_t t138 = t9 * t130 - t10 * t113;
+    const ariane4_free_real_t t137 = parameters[ZZ4] - parameters[YY4]; /* link j4: force and moment */
+    const ariane4_free_real_t t138 = t9 * t130 - t10 * t113; /* link j4: motion */
     const ariane4_free_real_t t139 = t9 * t115;
     const ariane4_free_real_t t140 = t10 * t111 - t139;
     const ariane4_free_real_t t141 = t140 * t134;
     const ariane4_free_real_t t142 = t138 + t141;
-    const ariane4_free_real_t t143 = t141 + t142;
-    const ariane4_free_real_t t144 = t140 * t133;
-    const ariane4_free_real_t t145 = t124 + t144;
+    const ariane4_free_real_t t143 = t141 + t142; /* link j4: force and moment */
+    const ariane4_free_real_t t144 = t140 * t133; /* link j4: motion */
+    const ariane4_free_real_t t145 = t124 + t144; /* link j4: force and moment */
     const ariane4_free_real_t t146 = t135 * t137 - parameters[XX4] * t136 + parameters[XY4] * t143
         + parameters[XZ4] * t145;
-    const ariane4_free_real_t t147 = t133 * t133;
+    const ariane4_free_real_t t147 = t133 * t133; /* link j4: motion */
     const ariane4_free_real_t t148 = t134 * t134;
+    /* link j4: force and moment */
     const ariane4_free_real_t t149 = t146 + parameters[YZ4] * (t148 - t147) + (parameters[MY4] * t118
         + parameters[MZ4] * t129);
-    const ariane4_free_real_t t150 = t10 * t123 + t9 * t128;
-    const ariane4_free_real_t t151 = parameters[ZZ4] - parameters[XX4];
+    const ariane4_free_real_t t150 = t10 * t123 + t9 * t128; /* link j4: motion */
+    const ariane4_free_real_t t151 = parameters[ZZ4] - parameters[XX4]; /* link j4: force and moment */
     const ariane4_free_real_t t152 = t136 - t135;
     const ariane4_free_real_t t153 = t144 - t124;
     const ariane4_free_real_t t154 = parameters[XY4] * t152 - (parameters[YY4] * t142 + t141 * t151)
         + parameters[YZ4] * t153;
-    const ariane4_free_real_t t155 = t140 * t140;
+    const ariane4_free_real_t t155 = t140 * t140; /* link j4: motion */
+    /* link j4: force and moment */
     const ariane4_free_real_t t156 = t154 + parameters[XZ4] * (t148 - t155) + (parameters[MX4] * t118
         - parameters[MZ4] * t150);
     const ariane4_free_real_t t157 = parameters[MX4] * (t147 + t148) + parameters[MY4] * t153
@@ -351,51 +372,63 @@ int ariane4_free_forward_dynamics_derivatives_standard(
     const ariane4_free_real_t t159 = parameters[MX4] * t145 + parameters[MY4] * (t155 + t148)
         + parameters[MZ4] * t131;
     const ariane4_free_real_t t160 = t159 - parameters[M4] * t129;
-    const ariane4_free_real_t t161 = t9 * t158 + t10 * t160;
-    const ariane4_free_real_t t162 = parameters[ZZ3] - parameters[YY3];
-    const ariane4_free_real_t t163 = ARIANE4_FREE_C(2.0) * t124;
+    const ariane4_free_real_t t161 = t9 * t158 + t10 * t160; /* link j4: what it passes on */
+    const ariane4_free_real_t t162 = parameters[ZZ3] - parameters[YY3]; /* link j3: force and moment */
+    const ariane4_free_real_t t163 = ARIANE4_FREE_C(2.0) * t124; /* link j4: motion */
+    /* link j3: force and moment */
     const ariane4_free_real_t t164 = parameters[XY3] * t163 - (parameters[XX3] * t125 + t125 * t162)
         - parameters[XZ3] * t113;
     const ariane4_free_real_t t165 = t164 + parameters[YZ3] * (t116 - t121) - (parameters[MY3] * t127
         + parameters[MZ3] * t110);
+    /* link j4: what it passes on */
     const ariane4_free_real_t t166 = t165 + (t10 * t149 + t9 * t156 + ARIANE4_FREE_C(-0.436) * t161);
+    /* link j4: force and moment */
     const ariane4_free_real_t t167 = parameters[ZZ4] * t124 - t16 * t144 + parameters[YZ4] * t138
         - parameters[XZ4] * t131;
     const ariane4_free_real_t t168 = t167 - parameters[XY4] * (t155 - t147) - (parameters[MX4] * t129
         + parameters[MY4] * t150);
-    const ariane4_free_real_t t169 = parameters[ZZ3] - parameters[XX3];
+    const ariane4_free_real_t t169 = parameters[ZZ3] - parameters[XX3]; /* link j3: force and moment */
     const ariane4_free_real_t t170 = parameters[YY3] * t124 + t124 * t169 - parameters[XY3] * t130
         + parameters[YZ3] * t113;
     const ariane4_free_real_t t171 = t170 - parameters[XZ3] * (t116 - t114) + (parameters[MZ3] * t120
         + parameters[MX3] * t127);
+    /* link j4: what it passes on */
     const ariane4_free_real_t t172 = t171 + (t168 - ARIANE4_FREE_C(0.1) * t161);
-    const ariane4_free_real_t t173 = dq[1] * t101;
+    const ariane4_free_real_t t173 = dq[1] * t101; /* link j2: motion */
+    /* link j2: force and moment */
     const ariane4_free_real_t t174 = t173 * (parameters[YY2] - parameters[ZZ2]);
-    const ariane4_free_real_t t175 = ARIANE4_FREE_C(2.0) * t126;
+    const ariane4_free_real_t t175 = ARIANE4_FREE_C(2.0) * t126; /* link j2: motion */
+    /* link j2: force and moment */
     const ariane4_free_real_t t176 = t174 - t173 * parameters[XX2] + t175 * parameters[XY2]
         - t108 * parameters[XZ2];
     const ariane4_free_real_t t177 = (t102 - t103) * parameters[YZ2];
     const ariane4_free_real_t t178 = t106 * parameters[MZ2];
+    /* link j3: what it passes on */
     const ariane4_free_real_t t179 = t176 - t177 + t178 + (t2 * t166 - t1 * t172);
+    /* link j3: force and moment */
     const ariane4_free_real_t t180 = parameters[MX3] * t163 + parameters[MY3] * t130 - parameters[MZ3] * (t114
         + t121);
-    const ariane4_free_real_t t181 = parameters[M3] * t127 + t180 + t161;
+    const ariane4_free_real_t t181 = parameters[M3] * t127 + t180 + t161; /* link j4: what it passes on */
+    /* link j2: force and moment */
     const ariane4_free_real_t t182 = t126 * (parameters[ZZ2] - parameters[XX2]);
-    const ariane4_free_real_t t183 = ARIANE4_FREE_C(2.0) * t173;
+    const ariane4_free_real_t t183 = ARIANE4_FREE_C(2.0) * t173; /* link j2: motion */
+    /* link j2: force and moment */
     const ariane4_free_real_t t184 = t126 * parameters[YY2] + t182 - t183 * parameters[XY2]
         + t108 * parameters[YZ2];
-    const ariane4_free_real_t t185 = t107 * t107;
-    const ariane4_free_real_t t186 = (t185 - t103) * parameters[XZ2];
+    const ariane4_free_real_t t185 = t107 * t107; /* link j2: motion */
+    const ariane4_free_real_t t186 = (t185 - t103) * parameters[XZ2]; /* link j2: force and moment */
     const ariane4_free_real_t t187 = t100 * parameters[MZ2];
+    /* link j3: what it passes on */
     const ariane4_free_real_t t188 = t184 + t186 - t187 + (t1 * t166 + t2 * t172
         + ARIANE4_FREE_C(0.443) * t181);
-    const ariane4_free_real_t t189 = t185 + t102;
-    const ariane4_free_real_t t190 = t189 * parameters[MZ2];
+    const ariane4_free_real_t t189 = t185 + t102; /* link j3: motion */
+    const ariane4_free_real_t t190 = t189 * parameters[MZ2]; /* link j2: force and moment */
+    /* link j2: what it passes on */
     const ariane4_free_real_t t191 = ARIANE4_FREE_C(0.116) * (t175 * parameters[MX2] + t183 * parameters[MY2]
         - t190 + t181);
     const ariane4_free_real_t t192 = t76 * dq[0];
-    const ariane4_free_real_t t193 = ariane4_free_sign(t192);
-    const ariane4_free_real_t t194 = ARIANE4_FREE_C(72.7913960548305) * (t74 * t74);
+    const ariane4_free_real_t t193 = ariane4_free_sign(t192); /* joint j1: coulomb_friction */
+    const ariane4_free_real_t t194 = ARIANE4_FREE_C(72.7913960548305) * (t74 * t74); /* joint j1: drive */
     const ariane4_free_real_t t195 = t71 * t71;
     const ariane4_free_real_t t196 = ARIANE4_FREE_C(3885.523436256565) * t72 + t194 * t195;
     const ariane4_free_real_t t197 = t74 * t196;
@@ -403,23 +436,24 @@ int ariane4_free_forward_dynamics_derivatives_standard(
         + t197 * t98 * parameters[IA1];
     const ariane4_free_real_t t199 = t27 * t179 + t28 * t188 + t191 - t76 * t198;
     const ariane4_free_real_t t200 = ARIANE4_FREE_C(0.004) * t76;
-    const ariane4_free_real_t t201 = ariane4_free_sign(dq[3]);
+    const ariane4_free_real_t t201 = ariane4_free_sign(dq[3]); /* joint j4: coulomb_friction */
     const ariane4_free_real_t t202 = ARIANE4_FREE_C(1.0e2) * (ARIANE4_FREE_C(1.0e2) * dq[3] * parameters[FV4]
         + t201 * parameters[FC4]) - t168;
     const ariane4_free_real_t t203 = ARIANE4_FREE_C(5.0) * input[3] - t202;
+    /* link j4: force and moment */
     const ariane4_free_real_t t204 = parameters[MZ4] * (t155 + t147) - (parameters[MX4] * t143
         + parameters[MY4] * t152);
     const ariane4_free_real_t t205 = parameters[M4] * t118 + t204;
-    const ariane4_free_real_t t206 = t10 * t158 - t9 * t160;
+    const ariane4_free_real_t t206 = t10 * t158 - t9 * t160; /* link j4: what it passes on */
     const ariane4_free_real_t t207 = t9 * t149 - t10 * t156 - (ARIANE4_FREE_C(-0.1) * t205
         - ARIANE4_FREE_C(0.436) * t206);
-    const ariane4_free_real_t t208 = parameters[XX3] - parameters[YY3];
+    const ariane4_free_real_t t208 = parameters[XX3] - parameters[YY3]; /* link j3: force and moment */
     const ariane4_free_real_t t209 = parameters[XY3] * (t114 - t121) - t113 * t208 + (parameters[MY3] * t120
         - parameters[MX3] * t110);
-    const ariane4_free_real_t t210 = t209 + t207;
+    const ariane4_free_real_t t210 = t209 + t207; /* link j4: what it passes on */
     const ariane4_free_real_t t211 = t8 * dq[2];
-    const ariane4_free_real_t t212 = ariane4_free_sign(t211);
-    const ariane4_free_real_t t213 = ARIANE4_FREE_C(188.12627071923498) * (t6 * t6);
+    const ariane4_free_real_t t212 = ariane4_free_sign(t211); /* joint j3: coulomb_friction */
+    const ariane4_free_real_t t213 = ARIANE4_FREE_C(188.12627071923498) * (t6 * t6); /* joint j3: drive */
     const ariane4_free_real_t t214 = t3 * t3;
     const ariane4_free_real_t t215 = ARIANE4_FREE_C(7124.375926654358) * t4 + t213 * t214;
     const ariane4_free_real_t t216 = t6 * t215;
@@ -429,18 +463,20 @@ int ariane4_free_forward_dynamics_derivatives_standard(
     const ariane4_free_real_t t219 = ARIANE4_FREE_C(0.003) * t8;
     const ariane4_free_real_t t220 = input[2] * t219 + (t8 * t218 + t210) + t203 * t24;
     const ariane4_free_real_t t221 = t199 - input[0] * t200 - t203 * t83 + t220 * t89;
+    /* link j4: what it passes on */
     const ariane4_free_real_t t222 = parameters[M3] * t120 + (parameters[MX3] * t122 - parameters[MY3] * t113)
         + t206;
     const ariane4_free_real_t t223 = parameters[M3] * t110 + (parameters[MY3] * t117 - parameters[MX3] * t113)
         + t205;
-    const ariane4_free_real_t t224 = (t185 - t102) * parameters[XY2];
+    const ariane4_free_real_t t224 = (t185 - t102) * parameters[XY2]; /* link j2: force and moment */
     const ariane4_free_real_t t225 = t108 * (parameters[XX2] - parameters[YY2]);
     const ariane4_free_real_t t226 = t106 * parameters[MX2] - t100 * parameters[MY2];
+    /* link j3: what it passes on */
     const ariane4_free_real_t t227 = t225 - t224 - t226 - (t210 - ARIANE4_FREE_C(0.443) * (t1 * t222
         + t2 * t223));
     const ariane4_free_real_t t228 = t34 * dq[1];
-    const ariane4_free_real_t t229 = ariane4_free_sign(t228);
-    const ariane4_free_real_t t230 = ARIANE4_FREE_C(104.12987373940295) * (t32 * t32);
+    const ariane4_free_real_t t229 = ariane4_free_sign(t228); /* joint j2: coulomb_friction */
+    const ariane4_free_real_t t230 = ARIANE4_FREE_C(104.12987373940295) * (t32 * t32); /* joint j2: drive */
     const ariane4_free_real_t t231 = t29 * t29;
     const ariane4_free_real_t t232 = ARIANE4_FREE_C(-2656.3065671641784) * t30 - t230 * t231;
     const ariane4_free_real_t t233 = t32 * t232;
@@ -459,7 +495,7 @@ int ariane4_free_forward_dynamics_derivatives_standard(
     const ariane4_free_real_t t242 = ariane4_free_bounded(t203 * t23 - t83 * t239 + t47 * t240 - t24 * t241);
     ddq[3] = t242;
     const ariane4_free_real_t t243 = t240 + t241;
-    const ariane4_free_real_t t244 = t27 * t2 + t28 * t1;
+    const ariane4_free_real_t t244 = t27 * t2 + t28 * t1; /* link j3: motion */
     const ariane4_free_real_t t245 = dq[0] * t244;
     const ariane4_free_real_t t246 = t27 * t1 - t28 * t2;
     const ariane4_free_real_t t247 = dq[0] * t246;
@@ -470,7 +506,7 @@ int ariane4_free_forward_dynamics_derivatives_standard(
     const ariane4_free_real_t t252 = t251 - t250;
     const ariane4_free_real_t t253 = t251 + t252;
     const ariane4_free_real_t t254 = t9 * t249 + t10 * t253;
-    const ariane4_free_real_t t255 = t9 * t245 + t132;
+    const ariane4_free_real_t t255 = t9 * t245 + t132; /* link j4: motion */
     const ariane4_free_real_t t256 = dq[3] - t247;
     const ariane4_free_real_t t257 = t255 * t256;
     const ariane4_free_real_t t258 = t257 + t254;
@@ -480,10 +516,10 @@ int ariane4_free_forward_dynamics_derivatives_standard(
     const ariane4_free_real_t t262 = t261 + t259;
     const ariane4_free_real_t t263 = t261 + t262;
     const ariane4_free_real_t t264 = t246 * t239;
-    const ariane4_free_real_t t265 = t245 * t115;
+    const ariane4_free_real_t t265 = t245 * t115; /* link j3: motion */
     const ariane4_free_real_t t266 = t265 + t264;
     const ariane4_free_real_t t267 = t266 - t242;
-    const ariane4_free_real_t t268 = t260 * t255;
+    const ariane4_free_real_t t268 = t260 * t255; /* link j4: motion */
     const ariane4_free_real_t t269 = t268 + t267;
     const ariane4_free_real_t t270 = t257 * t137 + parameters[XX4] * t258 + parameters[XY4] * t263
         + parameters[XZ4] * t269;
@@ -496,8 +532,8 @@ int ariane4_free_forward_dynamics_derivatives_standard(
     const ariane4_free_real_t t277 = t273 + ARIANE4_FREE_C(0.443) * t276;
     const ariane4_free_real_t t278 = t265 + t266;
     const ariane4_free_real_t t279 = ARIANE4_FREE_C(0.1) * t278 + ARIANE4_FREE_C(0.436) * t253 - t277;
-    const ariane4_free_real_t t280 = t247 * t247;
-    const ariane4_free_real_t t281 = t280 + t116;
+    const ariane4_free_real_t t280 = t247 * t247; /* link j3: motion */
+    const ariane4_free_real_t t281 = t280 + t116; /* link j4: motion */
     const ariane4_free_real_t t282 = t108 + t240;
     const ariane4_free_real_t t283 = t106 + ARIANE4_FREE_C(0.443) * t282;
     const ariane4_free_real_t t284 = t119 + t1 * t283;
@@ -505,8 +541,8 @@ int ariane4_free_forward_dynamics_derivatives_standard(
     const ariane4_free_real_t t286 = t10 * t279 - t9 * t285;
     const ariane4_free_real_t t287 = parameters[MZ4] * t286;
     const ariane4_free_real_t t288 = t248 - t243;
-    const ariane4_free_real_t t289 = t245 * t245;
-    const ariane4_free_real_t t290 = t289 + t116;
+    const ariane4_free_real_t t289 = t245 * t245; /* link j3: motion */
+    const ariane4_free_real_t t290 = t289 + t116; /* link j4: motion */
     const ariane4_free_real_t t291 = t2 * t283 - t105;
     const ariane4_free_real_t t292 = t291 - (ARIANE4_FREE_C(0.436) * t290 - ARIANE4_FREE_C(0.1) * t288);
     const ariane4_free_real_t t293 = (t272 - t271) * parameters[YZ4] + t270 + (t287 - parameters[MY4] * t292);
@@ -556,7 +592,7 @@ int ariane4_free_forward_dynamics_derivatives_standard(
     const ariane4_free_real_t t326 = parameters[M2] * t273 + (parameters[MX2] * t276 + parameters[MY2] * t323
         - t190);
     const ariane4_free_real_t t327 = t28 * t325 - t27 * t319 + ARIANE4_FREE_C(0.116) * (t326 + t322);
-    const ariane4_free_real_t t328 = ARIANE4_FREE_C(0.06434139546481742) * t73 / t71;
+    const ariane4_free_real_t t328 = ARIANE4_FREE_C(0.06434139546481742) * t73 / t71; /* joint j1: drive */
     const ariane4_free_real_t t329 = ariane4_free_select(t73, t73, ARIANE4_FREE_C(1.0));
     const ariane4_free_real_t t330 = ARIANE4_FREE_C(1.0) / t329;
     const ariane4_free_real_t t331 = ARIANE4_FREE_C(0.037468) * t71;
@@ -586,14 +622,14 @@ int ariane4_free_forward_dynamics_derivatives_standard(
     ddq_by_q[12] = t347 * t339;
     const ariane4_free_real_t t348 = t255 * parameters[MZ4] + t256 * parameters[MY4];
     const ariane4_free_real_t t349 = t256 * parameters[MX4] - t260 * parameters[MZ4];
-    const ariane4_free_real_t t350 = t10 * t348 + t9 * t349;
+    const ariane4_free_real_t t350 = t10 * t348 + t9 * t349; /* link j4: inertia, momentum beyond */
     const ariane4_free_real_t t351 = ARIANE4_FREE_C(0.1) * t350;
     const ariane4_free_real_t t352 = t260 * parameters[MY4] + t255 * parameters[MX4];
     const ariane4_free_real_t t353 = ARIANE4_FREE_C(0.436) * t352;
-    const ariane4_free_real_t t354 = ARIANE4_FREE_C(-0.436) * t115;
-    const ariane4_free_real_t t355 = t35 * t354;
-    const ariane4_free_real_t t356 = ARIANE4_FREE_C(-0.1) * t115;
-    const ariane4_free_real_t t357 = t37 * t356;
+    const ariane4_free_real_t t354 = ARIANE4_FREE_C(-0.436) * t115; /* link j4: velocity of its origin */
+    const ariane4_free_real_t t355 = t35 * t354; /* link j4: inertia, momentum beyond */
+    const ariane4_free_real_t t356 = ARIANE4_FREE_C(-0.1) * t115; /* link j4: velocity of its origin */
+    const ariane4_free_real_t t357 = t37 * t356; /* link j4: inertia, momentum beyond */
     const ariane4_free_real_t t358 = ARIANE4_FREE_C(-0.436) * t245 + ARIANE4_FREE_C(0.1) * t247;
     const ariane4_free_real_t t359 = t21 * t358;
     const ariane4_free_real_t t360 = t351 + t353 + (t357 - t355 + t359);
@@ -629,18 +665,20 @@ int ariane4_free_forward_dynamics_derivatives_standard(
     const ariane4_free_real_t t388 = t10 * t386 - t9 * t387 + (ARIANE4_FREE_C(0.1) * t352 + t35 * t356);
     const ariane4_free_real_t t389 = parameters[XX3] - t383;
     const ariane4_free_real_t t390 = t115 * t389 - t245 * parameters[XZ3] + t388;
+    /* link j3: inertia, momentum beyond */
     const ariane4_free_real_t t391 = t2 * (t375 - t378) + t1 * (t385 - t390);
     const ariane4_free_real_t t392 = t2 * t391;
-    const ariane4_free_real_t t393 = ARIANE4_FREE_C(-0.443) * dq[1];
-    const ariane4_free_real_t t394 = t62 * t393;
+    const ariane4_free_real_t t393 = ARIANE4_FREE_C(-0.443) * dq[1]; /* link j3: velocity of its origin */
+    const ariane4_free_real_t t394 = t62 * t393; /* link j3: inertia, momentum beyond */
+    /* link j4: inertia, momentum beyond */
     const ariane4_free_real_t t395 = t247 * parameters[MZ3] + t115 * parameters[MY3] + (t350
         - parameters[M4] * t354);
     const ariane4_free_real_t t396 = t115 * parameters[MX3] - t245 * parameters[MZ3] + (t352
         + parameters[M4] * t356);
-    const ariane4_free_real_t t397 = t2 * t395 + t1 * t396;
+    const ariane4_free_real_t t397 = t2 * t395 + t1 * t396; /* link j3: inertia, momentum beyond */
     const ariane4_free_real_t t398 = ARIANE4_FREE_C(0.443) * t397;
-    const ariane4_free_real_t t399 = ARIANE4_FREE_C(-0.443) * t101;
-    const ariane4_free_real_t t400 = t90 * t399;
+    const ariane4_free_real_t t399 = ARIANE4_FREE_C(-0.443) * t101; /* link j3: velocity of its origin */
+    const ariane4_free_real_t t400 = t90 * t399; /* link j3: inertia, momentum beyond */
     const ariane4_free_real_t t401 = t398 + (t394 + t400);
     const ariane4_free_real_t t402 = dq[1] * parameters[XY2];
     const ariane4_free_real_t t403 = t107 * parameters[YZ2];
@@ -656,17 +694,20 @@ int ariane4_free_forward_dynamics_derivatives_standard(
     const ariane4_free_real_t t412 = parameters[XX2] - t408;
     const ariane4_free_real_t t413 = dq[1] * t412 - t107 * parameters[XZ2] + (t390 + t407
         + (ARIANE4_FREE_C(0.443) * t411 + t66 * t393));
+    /* link j2: inertia, momentum beyond */
     const ariane4_free_real_t t414 = t28 * (t28 * (t404 - t406) + t27 * (t410 + t413));
+    /* link j3: inertia, momentum beyond */
     const ariane4_free_real_t t415 = t101 * parameters[MZ2] - dq[1] * parameters[MY2] - t397;
     const ariane4_free_real_t t416 = t107 * parameters[MZ2] - dq[1] * parameters[MX2] + (t411 + t40 * t393);
-    const ariane4_free_real_t t417 = t90 - parameters[MZ2];
+    const ariane4_free_real_t t417 = t90 - parameters[MZ2]; /* link j3: inertia of it and all beyond */
+    /* link j2: inertia, momentum beyond */
     const ariane4_free_real_t t418 = ARIANE4_FREE_C(0.116) * (t28 * t415 + t27 * t416)
         - t417 * (ARIANE4_FREE_C(-0.116) * dq[0]);
     const ariane4_free_real_t t419 = ARIANE4_FREE_C(250.0) * (t76 * parameters[FV1]
         + parameters[IA1] * (t197 * (ARIANE4_FREE_C(2.0) * dq[0])));
     const ariane4_free_real_t t420 = t419 + t328 * (ARIANE4_FREE_C(2.0) * (t406 + t414 + t418));
     const ariane4_free_real_t t421 = t235 * t341;
-    const ariane4_free_real_t t422 = t9 * t371;
+    const ariane4_free_real_t t422 = t9 * t371; /* link j4: inertia, momentum beyond */
     const ariane4_free_real_t t423 = t9 * t348 - t10 * t349;
     const ariane4_free_real_t t424 = t245 * parameters[XY3] + t247 * t389 - (t368 - t422
         - (ARIANE4_FREE_C(0.1) * t423 - t35 * t358));
@@ -674,26 +715,29 @@ int ariane4_free_forward_dynamics_derivatives_standard(
     const ariane4_free_real_t t426 = t245 * t384 + t247 * parameters[XY3] + t425;
     const ariane4_free_real_t t427 = t245 * parameters[MY3] + t247 * parameters[MX3] + (t423
         - parameters[M4] * t358);
+    /* link j3: inertia, momentum beyond */
     const ariane4_free_real_t t428 = t2 * t424 - t1 * t426 - (ARIANE4_FREE_C(0.443) * t427 + t66 * t399);
+    /* link j2: derivatives */
     const ariane4_free_real_t t429 = ARIANE4_FREE_C(2.0) * (t107 * parameters[XY2] - t101 * t412 + t428);
+    /* link j3: inertia, momentum beyond */
     const ariane4_free_real_t t430 = t101 * parameters[XY2] + t107 * t409 - (t1 * t424 + t2 * t426
         - t62 * t399);
-    const ariane4_free_real_t t431 = ARIANE4_FREE_C(2.0) * t430;
+    const ariane4_free_real_t t431 = ARIANE4_FREE_C(2.0) * t430; /* link j2: derivatives */
     const ariane4_free_real_t t432 = ARIANE4_FREE_C(-0.232) * dq[0];
     const ariane4_free_real_t t433 = t27 * t429 - t28 * t431 - (t28 * t65 + t27 * t67) * t432;
-    const ariane4_free_real_t t434 = ARIANE4_FREE_C(0.03137188092799786) * t31 / t29;
+    const ariane4_free_real_t t434 = ARIANE4_FREE_C(0.03137188092799786) * t31 / t29; /* joint j2: drive */
     const ariane4_free_real_t t435 = t434 * t433;
     const ariane4_free_real_t t436 = ariane4_free_bounded(t219 * t343);
-    const ariane4_free_real_t t437 = ARIANE4_FREE_C(2.0) * t424;
+    const ariane4_free_real_t t437 = ARIANE4_FREE_C(2.0) * t424; /* link j3: derivatives */
     const ariane4_free_real_t t438 = ARIANE4_FREE_C(2.0) * t426;
-    const ariane4_free_real_t t439 = ARIANE4_FREE_C(0.886) * t101;
-    const ariane4_free_real_t t440 = t2 * t437 - t1 * t438 + t39 * t439;
+    const ariane4_free_real_t t439 = ARIANE4_FREE_C(0.886) * t101; /* link j4: derivatives */
+    const ariane4_free_real_t t440 = t2 * t437 - t1 * t438 + t39 * t439; /* link j3: derivatives */
     const ariane4_free_real_t t441 = t1 * t437 + t2 * t438 + t62 * t439;
     const ariane4_free_real_t t442 = t27 * t440 + t28 * t441 - (t28 * t62 + t27 * t39) * t432;
-    const ariane4_free_real_t t443 = ARIANE4_FREE_C(0.046787723832235825) * t5 / t3;
+    const ariane4_free_real_t t443 = ARIANE4_FREE_C(0.046787723832235825) * t5 / t3; /* joint j3: drive */
     const ariane4_free_real_t t444 = t443 * t442;
     const ariane4_free_real_t t445 = ARIANE4_FREE_C(-5.0) * t346;
-    const ariane4_free_real_t t446 = ARIANE4_FREE_C(2.0) * t386;
+    const ariane4_free_real_t t446 = ARIANE4_FREE_C(2.0) * t386; /* link j4: derivatives */
     const ariane4_free_real_t t447 = ARIANE4_FREE_C(2.0) * t387;
     const ariane4_free_real_t t448 = ARIANE4_FREE_C(0.2) * t115;
     const ariane4_free_real_t t449 = t10 * t446 - t9 * t447 - t11 * t448;
@@ -702,8 +746,8 @@ int ariane4_free_forward_dynamics_derivatives_standard(
         + t11 * (ARIANE4_FREE_C(0.872) * t115));
     const ariane4_free_real_t t452 = ARIANE4_FREE_C(-0.886) * dq[1];
     const ariane4_free_real_t t453 = t1 * t451 - t2 * t449 + (t11 * t452 + t45 * t439);
-    const ariane4_free_real_t t454 = t2 * t21;
-    const ariane4_free_real_t t455 = t1 * t449 + t2 * t451 + t454 * t439;
+    const ariane4_free_real_t t454 = t2 * t21; /* link j4: column of the mass matrix */
+    const ariane4_free_real_t t455 = t1 * t449 + t2 * t451 + t454 * t439; /* link j4: derivatives */
     const ariane4_free_real_t t456 = t27 * t453 - t28 * t455 - (t27 * t45 - t28 * t454) * t432;
     const ariane4_free_real_t t457 = ARIANE4_FREE_C(0.2) * t456;
     const ariane4_free_real_t t458 = t435 * t421 - t420 * t340 + t444 * t436 + t457 * t445;
@@ -740,7 +784,7 @@ int ariane4_free_forward_dynamics_derivatives_standard(
     const ariane4_free_real_t t480 = t475 * t416 + t476 * t415 - (t65 * t274 + t67 * t316);
     const ariane4_free_real_t t481 = t328 * (t479 + ARIANE4_FREE_C(0.116) * t480);
     const ariane4_free_real_t t482 = t10 * t303 + t9 * t306;
-    const ariane4_free_real_t t483 = t297 + t271;
+    const ariane4_free_real_t t483 = t297 + t271; /* link j4: columns */
     const ariane4_free_real_t t484 = parameters[M4] * t292 - (t483 * parameters[MZ4] - (parameters[MX4] * t263
         - parameters[MY4] * t294));
     const ariane4_free_real_t t485 = ARIANE4_FREE_C(0.1) * t484 - ARIANE4_FREE_C(-0.436) * t482 - (t9 * t293
@@ -791,27 +835,34 @@ int ariane4_free_forward_dynamics_derivatives_standard(
     const ariane4_free_real_t t515 = t347 * t481 - t470 * t507 - t471 * t509 + t473 * t511;
     ddq_by_q[13] = t515;
     const ariane4_free_real_t t516 = t383 - parameters[ZZ3];
+    /* link j4: inertia, momentum beyond */
     const ariane4_free_real_t t517 = t247 * t516 - t115 * parameters[YZ3] + (t370 + t422 + t21 * t354);
     const ariane4_free_real_t t518 = t115 * parameters[XZ3] + t245 * t516 - (t9 * t386 + t10 * t387
         - t21 * t356);
     const ariane4_free_real_t t519 = parameters[ZZ2] - t408;
+    /* link j3: inertia, momentum beyond */
     const ariane4_free_real_t t520 = t101 * t519 - dq[1] * parameters[YZ2] + (t2 * t517 - t1 * t518);
+    /* link j2: derivatives */
     const ariane4_free_real_t t521 = t27 * (ARIANE4_FREE_C(2.0) * t520 + (t60 * t475 + t63 * t476));
+    /* link j3: inertia, momentum beyond */
     const ariane4_free_real_t t522 = dq[1] * parameters[XZ2] - t107 * t519 + (t1 * t517 + t2 * t518
         - t90 * t393);
+    /* link j2: derivatives */
     const ariane4_free_real_t t523 = t28 * (ARIANE4_FREE_C(2.0) * t522 + (t63 * t475 + t61 * t476));
     const ariane4_free_real_t t524 = t521 + t523 + ARIANE4_FREE_C(0.116) * (t67 * t476 - t65 * t475);
     const ariane4_free_real_t t525 = t328 * t524;
+    /* link j4: inertia, momentum beyond */
     const ariane4_free_real_t t526 = t373 + t377 + (t360 - (t363 - t372 + t359));
+    /* link j2: derivatives */
     const ariane4_free_real_t t527 = ARIANE4_FREE_C(2.0) * (t405 - t403 + (t401 - (t526 + t400)))
         - ARIANE4_FREE_C(2.0) * (t107 * t92 - t101 * t91);
     const ariane4_free_real_t t528 = ARIANE4_FREE_C(83.33333333333333) * (t34 * parameters[FV2]
         + parameters[IA2] * (t233 * (ARIANE4_FREE_C(2.0) * dq[1])));
     const ariane4_free_real_t t529 = t528 - t434 * t527;
-    const ariane4_free_real_t t530 = ARIANE4_FREE_C(2.0) * t526;
+    const ariane4_free_real_t t530 = ARIANE4_FREE_C(2.0) * t526; /* link j3: derivatives */
     const ariane4_free_real_t t531 = t530 - t62 * t452 + ARIANE4_FREE_C(2.0) * (t107 * t87 - t101 * t86);
     const ariane4_free_real_t t532 = t443 * t531;
-    const ariane4_free_real_t t533 = t9 * t446 + t10 * t447 + t21 * t448;
+    const ariane4_free_real_t t533 = t9 * t446 + t10 * t447 + t21 * t448; /* link j4: derivatives */
     const ariane4_free_real_t t534 = t533 + t454 * t452 + ARIANE4_FREE_C(2.0) * (t107 * t81 - t101 * t80);
     const ariane4_free_real_t t535 = ARIANE4_FREE_C(0.2) * t534;
     const ariane4_free_real_t t536 = t529 * t421 - t525 * t340 + t532 * t436 + t535 * t445;
@@ -869,6 +920,7 @@ int ariane4_free_forward_dynamics_derivatives_standard(
     ddq_by_q[10] = t573;
     const ariane4_free_real_t t574 = t347 * t549 + t470 * t556 + t471 * t568 + t473 * t570;
     ddq_by_q[14] = t574;
+    /* link j3: derivatives */
     const ariane4_free_real_t t575 = ARIANE4_FREE_C(2.0) * t517 - (t54 * t541 + t57 * t540);
     const ariane4_free_real_t t576 = ARIANE4_FREE_C(2.0) * t518 - (t57 * t541 + t55 * t540);
     const ariane4_free_real_t t577 = t38 * t541 - t36 * t540;
@@ -933,6 +985,7 @@ int ariane4_free_forward_dynamics_derivatives_standard(
     ddq_by_q[11] = t616;
     const ariane4_free_real_t t617 = t347 * t607 + t470 * t611 - t471 * t612 + t473 * t613;
     ddq_by_q[15] = t617;
+    /* link j4: derivatives */
     const ariane4_free_real_t t618 = ARIANE4_FREE_C(-2.0) * t380 - (parameters[XY4] * t593
         + parameters[XX4] * t592);
     const ariane4_free_real_t t619 = ARIANE4_FREE_C(-2.0) * t381 + (parameters[XY4] * t592

@@ -6,7 +6,7 @@
  * Arm ariane4_free, description 79391f27012d8ce4.
  * SPDX-License-Identifier: 0BSD
  *
- * Operations: 611 (340 mul, 271 add, 0 neg), 7 div, 3 sqrt, 8 trig, 4 other.
+ * Operations: 611 (340 mul, 271 add, 0 neg), 7 div, 3 sqrt, 8 trig, 4 other calls (sign, select and the like).
  *
  * @param[in]   q           [4]   [rad]      joint coordinates; norm at most 10000
  * @param[in]   dq          [4]   [rad/s]    joint velocities; norm at most 100000
@@ -79,11 +79,11 @@
  */
 #include "ariane4_free_private.h"
 
-#if ARIANE4_FREE_GENERATION != 0x261051E4UL
+#if ARIANE4_FREE_GENERATION != 0x6EBE5535UL
 #error "ariane4_free.h and ariane4_free_forward_dynamics_standard.c are of different generations: generate the arm again"
 #endif
 
-int ariane4_free_forward_dynamics_standard(
+ariane4_free_status_t ariane4_free_forward_dynamics_standard(
     const ariane4_free_real_t q[ARIANE4_FREE_N_JOINTS],
     const ariane4_free_real_t dq[ARIANE4_FREE_N_JOINTS],
     const ariane4_free_real_t input[ARIANE4_FREE_N_JOINTS],
@@ -93,7 +93,7 @@ int ariane4_free_forward_dynamics_standard(
     enum { XX1 = 0, XY1, XZ1, YY1, YZ1, ZZ1, MX1, MY1, MZ1, M1, XX2, XY2, XZ2, YY2, YZ2, ZZ2, MX2, MY2, MZ2,
         M2, XX3, XY3, XZ3, YY3, YZ3, ZZ3, MX3, MY3, MZ3, M3, XX4, XY4, XZ4, YY4, YZ4, ZZ4, MX4, MY4, MZ4, M4,
         FV1, FC1, IA1, FV2, FC2, IA2, FV3, FC3, IA3, FV4, FC4, IA4 };
-    int status = ARIANE4_FREE_STATUS_OK;
+    ariane4_free_status_t status = ARIANE4_FREE_STATUS_OK;
 
     if (!ariane4_free_within_joints(q, ARIANE4_FREE_C(1.0e8))
         || !ariane4_free_within_joints(dq, ARIANE4_FREE_C(1.0e10))
@@ -125,6 +125,7 @@ int ariane4_free_forward_dynamics_standard(
         ariane4_free_zero(out, 4);
         return ARIANE4_FREE_STATUS_PIVOT;
     }
+    /* joint j3: drive */
     const ariane4_free_real_t t3 = ARIANE4_FREE_C(0.06366143813161289) * t1
         + ARIANE4_FREE_C(0.9979715533496006) * t2;
     const ariane4_free_real_t t4 = ARIANE4_FREE_C(0.06366143813161289) * t2
@@ -133,7 +134,9 @@ int ariane4_free_forward_dynamics_standard(
         + ARIANE4_FREE_C(0.242037));
     const ariane4_free_real_t t6 = ARIANE4_FREE_C(1.0) / t5;
     const ariane4_free_real_t t7 = t3 * (ARIANE4_FREE_C(7124.375926654358) * t6);
+    /* link j4: column of the mass matrix */
     const ariane4_free_real_t t10 = t8 * parameters[MY4] - t9 * parameters[MX4];
+    /* link j4: inertia of it and all beyond */
     const ariane4_free_real_t t11 = ARIANE4_FREE_C(0.1) * parameters[M4];
     const ariane4_free_real_t t12 = ARIANE4_FREE_C(0.1) * (t11 + ARIANE4_FREE_C(2.0) * t10);
     const ariane4_free_real_t t13 = ARIANE4_FREE_C(0.436) * parameters[M4];
@@ -143,6 +146,7 @@ int ariane4_free_forward_dynamics_standard(
     const ariane4_free_real_t t17 = t9 * t16;
     const ariane4_free_real_t t18 = parameters[ZZ3] + (parameters[XX4] - t17 + (t12 + t14));
     const ariane4_free_real_t t19 = t18 + t7 * t7 * parameters[IA3];
+    /* link j4: column of the mass matrix */
     const ariane4_free_real_t t20 = t9 * parameters[MY4] + t8 * parameters[MX4];
     const ariane4_free_real_t t21 = ARIANE4_FREE_C(0.436) * t20 - (t8 * parameters[XZ4]
         + t9 * parameters[YZ4]);
@@ -158,6 +162,7 @@ int ariane4_free_forward_dynamics_standard(
         ariane4_free_zero(out, 4);
         return ARIANE4_FREE_STATUS_PIVOT;
     }
+    /* joint j2: drive */
     const ariane4_free_real_t t28 = ARIANE4_FREE_C(0.8305958991958126) * t26
         + ARIANE4_FREE_C(0.5568756164881881) * t27;
     const ariane4_free_real_t t29 = ARIANE4_FREE_C(-0.8305958991958126) * t27
@@ -166,14 +171,16 @@ int ariane4_free_forward_dynamics_standard(
         + ARIANE4_FREE_C(0.293698));
     const ariane4_free_real_t t31 = ARIANE4_FREE_C(1.0) / t30;
     const ariane4_free_real_t t32 = t28 * (ARIANE4_FREE_C(2656.3065671641784) * t31);
-    const ariane4_free_real_t t33 = t10 + t11;
+    const ariane4_free_real_t t33 = t10 + t11; /* link j4: inertia of it and all beyond */
     const ariane4_free_real_t t34 = parameters[MX3] - t33;
     const ariane4_free_real_t t35 = parameters[MY3] + (parameters[MZ4] + t13);
-    const ariane4_free_real_t t36 = t2 * t34 - t1 * t35;
+    const ariane4_free_real_t t36 = t2 * t34 - t1 * t35; /* link j3: column of the mass matrix */
+    /* link j4: inertia of it and all beyond */
     const ariane4_free_real_t t37 = parameters[M3] + parameters[M4];
-    const ariane4_free_real_t t38 = ARIANE4_FREE_C(0.443) * t37;
+    const ariane4_free_real_t t38 = ARIANE4_FREE_C(0.443) * t37; /* link j3: inertia of it and all beyond */
     const ariane4_free_real_t t39 = ARIANE4_FREE_C(0.443) * (t38 + ARIANE4_FREE_C(2.0) * t36);
     const ariane4_free_real_t t40 = parameters[ZZ2] + (t18 + t39) + t32 * t32 * parameters[IA2];
+    /* link j4: column of the mass matrix */
     const ariane4_free_real_t t41 = t21 + ARIANE4_FREE_C(-0.443) * (t1 * t20);
     const ariane4_free_real_t t42 = t41 * t22;
     const ariane4_free_real_t t43 = ARIANE4_FREE_C(-1.0) / t24;
@@ -189,22 +196,30 @@ int ariane4_free_forward_dynamics_standard(
         ariane4_free_zero(out, 4);
         return ARIANE4_FREE_STATUS_PIVOT;
     }
+    /* link j4: inertia of it and all beyond */
     const ariane4_free_real_t t48 = parameters[XX3] + (parameters[YY4] + t17 + t14);
     const ariane4_free_real_t t49 = parameters[YY3] + (parameters[ZZ4] + t12);
+    /* link j4: column of the mass matrix */
     const ariane4_free_real_t t50 = t9 * parameters[XZ4] - t8 * parameters[YZ4];
+    /* link j4: inertia of it and all beyond */
     const ariane4_free_real_t t51 = parameters[XY3] + (t50 + (ARIANE4_FREE_C(0.1) * parameters[MZ4]
         + ARIANE4_FREE_C(0.436) * t33));
+    /* link j3: inertia of it and all beyond */
     const ariane4_free_real_t t52 = t2 * (t48 - t49) - t51 * (ARIANE4_FREE_C(2.0) * t1);
     const ariane4_free_real_t t53 = t2 * t52;
     const ariane4_free_real_t t54 = parameters[XX2] + (t49 + t53);
-    const ariane4_free_real_t t55 = t2 * t35 + t1 * t34;
+    const ariane4_free_real_t t55 = t2 * t35 + t1 * t34; /* link j3: column of the mass matrix */
+    /* link j2: inertia of it and all beyond */
     const ariane4_free_real_t t56 = (parameters[XY2] + (t51 + t1 * t52
         + ARIANE4_FREE_C(-0.443) * t55)) * (ARIANE4_FREE_C(2.0) * t26);
     const ariane4_free_real_t t57 = t27 * (parameters[YY2] + (t48 - t53 + t39) - t54) + t56;
+    /* link j2: column of the mass matrix */
     const ariane4_free_real_t t58 = t27 * (parameters[MX2] + (t36 + t38)) - t26 * (parameters[MY2] + t55);
+    /* link j2: inertia of it and all beyond */
     const ariane4_free_real_t t59 = t54 + t27 * t57
         + ARIANE4_FREE_C(0.116) * (ARIANE4_FREE_C(0.116) * (parameters[M2] + t37)
         + ARIANE4_FREE_C(2.0) * t58);
+    /* joint j1: drive */
     const ariane4_free_real_t t62 = ARIANE4_FREE_C(-0.28217402066925895) * t60
         + ARIANE4_FREE_C(0.9593632378089879) * t61;
     const ariane4_free_real_t t63 = ARIANE4_FREE_C(0.28217402066925895) * t61
@@ -214,17 +229,20 @@ int ariane4_free_forward_dynamics_standard(
     const ariane4_free_real_t t65 = ARIANE4_FREE_C(-1.0) / t64;
     const ariane4_free_real_t t66 = t62 * (ARIANE4_FREE_C(3885.523436256565) * t65);
     const ariane4_free_real_t t67 = parameters[ZZ1] + t59 + t66 * t66 * parameters[IA1];
+    /* link j4: column of the mass matrix */
     const ariane4_free_real_t t68 = ARIANE4_FREE_C(-0.436) * t10 - t50;
     const ariane4_free_real_t t69 = parameters[ZZ4] + ARIANE4_FREE_C(0.1) * t10;
     const ariane4_free_real_t t70 = t27 * (t1 * t68 - t2 * t69 + ARIANE4_FREE_C(0.443) * t10);
     const ariane4_free_real_t t71 = t26 * (t2 * t68 + t1 * t69) + t70 + ARIANE4_FREE_C(0.116) * t10;
     const ariane4_free_real_t t72 = t71 * t22;
+    /* link j4: inertia of it and all beyond */
     const ariane4_free_real_t t73 = parameters[XY4] + t8 * t16 + ARIANE4_FREE_C(0.1) * t20 - parameters[XZ3];
     const ariane4_free_real_t t74 = parameters[YZ3] + t21;
-    const ariane4_free_real_t t75 = t2 * t73 + t1 * t74;
+    const ariane4_free_real_t t75 = t2 * t73 + t1 * t74; /* link j3: column of the mass matrix */
     const ariane4_free_real_t t76 = t1 * t73 - t2 * t74;
     const ariane4_free_real_t t77 = t26 * t75 + t27 * t76 + t71 * t23;
     const ariane4_free_real_t t78 = t77 * t43;
+    /* link j2: column of the mass matrix */
     const ariane4_free_real_t t79 = t26 * (t75 + ARIANE4_FREE_C(0.443) * (parameters[MZ3] - t20)
         - parameters[XZ2]) + t27 * (t76 - parameters[YZ2]);
     const ariane4_free_real_t t80 = t79 + t71 * t42 - t77 * t45;
@@ -240,17 +258,17 @@ int ariane4_free_forward_dynamics_standard(
         ariane4_free_zero(out, 4);
         return ARIANE4_FREE_STATUS_PIVOT;
     }
-    const ariane4_free_real_t t85 = dq[0] * dq[0];
-    const ariane4_free_real_t t86 = ARIANE4_FREE_C(-0.116) * t85;
+    const ariane4_free_real_t t85 = dq[0] * dq[0]; /* link j1: motion */
+    const ariane4_free_real_t t86 = ARIANE4_FREE_C(-0.116) * t85; /* link j2: motion */
     const ariane4_free_real_t t87 = t27 * t86 + ARIANE4_FREE_C(9.81) * t26;
     const ariane4_free_real_t t88 = t27 * dq[0];
     const ariane4_free_real_t t89 = t88 * t88;
     const ariane4_free_real_t t90 = dq[1] * dq[1];
-    const ariane4_free_real_t t91 = t87 + ARIANE4_FREE_C(-0.443) * (t89 + t90);
-    const ariane4_free_real_t t92 = t26 * t86 + ARIANE4_FREE_C(-9.81) * t27;
+    const ariane4_free_real_t t91 = t87 + ARIANE4_FREE_C(-0.443) * (t89 + t90); /* link j3: motion */
+    const ariane4_free_real_t t92 = t26 * t86 + ARIANE4_FREE_C(-9.81) * t27; /* link j2: motion */
     const ariane4_free_real_t t93 = t26 * dq[0];
     const ariane4_free_real_t t94 = t93 * t88;
-    const ariane4_free_real_t t95 = t92 + ARIANE4_FREE_C(-0.443) * t94;
+    const ariane4_free_real_t t95 = t92 + ARIANE4_FREE_C(-0.443) * t94; /* link j3: motion */
     const ariane4_free_real_t t96 = t1 * t91 + t2 * t95;
     const ariane4_free_real_t t97 = t2 * t93 + t1 * t88;
     const ariane4_free_real_t t98 = t2 * t88 - t1 * t93;
@@ -258,16 +276,17 @@ int ariane4_free_forward_dynamics_standard(
     const ariane4_free_real_t t100 = t97 * t97;
     const ariane4_free_real_t t101 = dq[1] + dq[2];
     const ariane4_free_real_t t102 = t101 * t101;
-    const ariane4_free_real_t t103 = t102 + t100;
+    const ariane4_free_real_t t103 = t102 + t100; /* link j4: motion */
     const ariane4_free_real_t t104 = t96 + (ARIANE4_FREE_C(0.1) * t99 + ARIANE4_FREE_C(0.436) * t103);
-    const ariane4_free_real_t t105 = t1 * t95 - t2 * t91;
+    const ariane4_free_real_t t105 = t1 * t95 - t2 * t91; /* link j3: motion */
     const ariane4_free_real_t t106 = t98 * t98;
-    const ariane4_free_real_t t107 = t102 + t106;
+    const ariane4_free_real_t t107 = t102 + t106; /* link j4: motion */
     const ariane4_free_real_t t108 = t105 - (ARIANE4_FREE_C(0.1) * t107 - ARIANE4_FREE_C(-0.436) * t99);
-    const ariane4_free_real_t t109 = t101 * t97;
+    const ariane4_free_real_t t109 = t101 * t97; /* link j3: motion */
     const ariane4_free_real_t t110 = t101 * t98;
-    const ariane4_free_real_t t111 = dq[1] * t93;
-    const ariane4_free_real_t t112 = ARIANE4_FREE_C(0.886) * t111;
+    const ariane4_free_real_t t111 = dq[1] * t93; /* link j2: motion */
+    const ariane4_free_real_t t112 = ARIANE4_FREE_C(0.886) * t111; /* link j3: motion */
+    /* link j4: motion */
     const ariane4_free_real_t t113 = t112 - (ARIANE4_FREE_C(0.2) * t109 + ARIANE4_FREE_C(-0.872) * t110);
     const ariane4_free_real_t t114 = t8 * t108 - t9 * t113;
     const ariane4_free_real_t t115 = ARIANE4_FREE_C(2.0) * t110;
@@ -280,21 +299,23 @@ int ariane4_free_forward_dynamics_standard(
     const ariane4_free_real_t t122 = t9 * t97 - t8 * t101;
     const ariane4_free_real_t t123 = t122 * t118;
     const ariane4_free_real_t t124 = t121 + t123;
-    const ariane4_free_real_t t125 = t123 + t124;
+    const ariane4_free_real_t t125 = t123 + t124; /* link j4: force and moment */
     const ariane4_free_real_t t126 = t119 * (parameters[ZZ4] - parameters[YY4]) - parameters[XX4] * t120
         + parameters[XY4] * t125;
-    const ariane4_free_real_t t127 = t122 * t117;
-    const ariane4_free_real_t t128 = t109 + t127;
-    const ariane4_free_real_t t129 = t117 * t117;
+    const ariane4_free_real_t t127 = t122 * t117; /* link j4: motion */
+    const ariane4_free_real_t t128 = t109 + t127; /* link j4: force and moment */
+    const ariane4_free_real_t t129 = t117 * t117; /* link j4: motion */
     const ariane4_free_real_t t130 = t118 * t118;
+    /* link j4: force and moment */
     const ariane4_free_real_t t131 = t126 + parameters[XZ4] * t128 + parameters[YZ4] * (t130 - t129)
         + (parameters[MY4] * t104 + parameters[MZ4] * t114);
-    const ariane4_free_real_t t132 = t9 * t108 + t8 * t113;
-    const ariane4_free_real_t t133 = t120 - t119;
+    const ariane4_free_real_t t132 = t9 * t108 + t8 * t113; /* link j4: motion */
+    const ariane4_free_real_t t133 = t120 - t119; /* link j4: force and moment */
     const ariane4_free_real_t t134 = parameters[XY4] * t133 - (parameters[YY4] * t124
         + t123 * (parameters[ZZ4] - parameters[XX4]));
     const ariane4_free_real_t t135 = t127 - t109;
-    const ariane4_free_real_t t136 = t122 * t122;
+    const ariane4_free_real_t t136 = t122 * t122; /* link j4: motion */
+    /* link j4: force and moment */
     const ariane4_free_real_t t137 = t134 + parameters[YZ4] * t135 + parameters[XZ4] * (t130 - t136)
         + (parameters[MX4] * t104 - parameters[MZ4] * t132);
     const ariane4_free_real_t t138 = parameters[MX4] * (t129 + t130) + parameters[MY4] * t135
@@ -303,79 +324,99 @@ int ariane4_free_forward_dynamics_standard(
     const ariane4_free_real_t t140 = parameters[MX4] * t128 + parameters[MY4] * (t136 + t130)
         + parameters[MZ4] * t116;
     const ariane4_free_real_t t141 = t140 - parameters[M4] * t114;
-    const ariane4_free_real_t t142 = t8 * t139 + t9 * t141;
-    const ariane4_free_real_t t143 = ARIANE4_FREE_C(2.0) * t109;
+    const ariane4_free_real_t t142 = t8 * t139 + t9 * t141; /* link j4: what it passes on */
+    const ariane4_free_real_t t143 = ARIANE4_FREE_C(2.0) * t109; /* link j4: motion */
+    /* link j3: force and moment */
     const ariane4_free_real_t t144 = parameters[XY3] * t143 - (parameters[XX3] * t110
         + t110 * (parameters[ZZ3] - parameters[YY3]));
     const ariane4_free_real_t t145 = t144 - parameters[XZ3] * t99 + parameters[YZ3] * (t102 - t106)
         - (parameters[MY3] * t112 + parameters[MZ3] * t96);
+    /* link j4: what it passes on */
     const ariane4_free_real_t t146 = t145 + (t9 * t131 + t8 * t137 + ARIANE4_FREE_C(-0.436) * t142);
+    /* link j4: force and moment */
     const ariane4_free_real_t t147 = parameters[ZZ4] * t109 - t15 * t127 + parameters[YZ4] * t121
         - parameters[XZ4] * t116;
     const ariane4_free_real_t t148 = t147 - parameters[XY4] * (t136 - t129) - (parameters[MX4] * t114
         + parameters[MY4] * t132);
+    /* link j3: force and moment */
     const ariane4_free_real_t t149 = parameters[YY3] * t109 - t109 * (parameters[XX3] - parameters[ZZ3])
         - parameters[XY3] * t115;
     const ariane4_free_real_t t150 = t149 + parameters[YZ3] * t99 - parameters[XZ3] * (t102 - t100)
         + (parameters[MZ3] * t105 + parameters[MX3] * t112);
+    /* link j4: what it passes on */
     const ariane4_free_real_t t151 = t150 + (t148 - ARIANE4_FREE_C(0.1) * t142);
-    const ariane4_free_real_t t152 = dq[1] * t88;
+    const ariane4_free_real_t t152 = dq[1] * t88; /* link j2: motion */
     const ariane4_free_real_t t153 = ARIANE4_FREE_C(2.0) * t111;
+    /* link j2: force and moment */
     const ariane4_free_real_t t154 = t152 * (parameters[YY2] - parameters[ZZ2]) - t152 * parameters[XX2]
         + t153 * parameters[XY2];
     const ariane4_free_real_t t155 = t154 - t94 * parameters[XZ2] + (t90 - t89) * parameters[YZ2]
         - t92 * parameters[MZ2];
+    /* link j3: force and moment */
     const ariane4_free_real_t t156 = parameters[MX3] * t143 + parameters[MY3] * t115 - parameters[MZ3] * (t100
         + t106);
-    const ariane4_free_real_t t157 = parameters[M3] * t112 + t156 + t142;
-    const ariane4_free_real_t t158 = ARIANE4_FREE_C(2.0) * t152;
+    const ariane4_free_real_t t157 = parameters[M3] * t112 + t156 + t142; /* link j4: what it passes on */
+    const ariane4_free_real_t t158 = ARIANE4_FREE_C(2.0) * t152; /* link j2: motion */
+    /* link j2: force and moment */
     const ariane4_free_real_t t159 = t111 * parameters[YY2] + t111 * (parameters[ZZ2] - parameters[XX2])
         - t158 * parameters[XY2];
-    const ariane4_free_real_t t160 = t93 * t93;
+    const ariane4_free_real_t t160 = t93 * t93; /* link j2: motion */
+    /* link j2: force and moment */
     const ariane4_free_real_t t161 = t159 + t94 * parameters[YZ2] + (t160 - t90) * parameters[XZ2]
         - t87 * parameters[MZ2];
+    /* link j3: what it passes on */
     const ariane4_free_real_t t162 = t161 + (t1 * t146 + t2 * t151 + ARIANE4_FREE_C(0.443) * t157);
+    /* link j2: what it passes on */
     const ariane4_free_real_t t163 = t26 * (t155 + (t2 * t146 - t1 * t151)) + t27 * t162;
+    /* link j2: force and moment */
     const ariane4_free_real_t t164 = t153 * parameters[MX2] + t158 * parameters[MY2] - (t160
         + t89) * parameters[MZ2];
     const ariane4_free_real_t t165 = t66 * dq[0];
-    const ariane4_free_real_t t166 = ariane4_free_sign(t165);
+    const ariane4_free_real_t t166 = ariane4_free_sign(t165); /* joint j1: coulomb_friction */
+    /* joint j1: drive */
     const ariane4_free_real_t t167 = ARIANE4_FREE_C(-3885.523436256565) * t63
         + ARIANE4_FREE_C(-72.7913960548305) * (t65 * t65) * (t62 * t62);
     const ariane4_free_real_t t168 = t165 * parameters[FV1] + t166 * parameters[FC1]
         + t65 * t167 * t85 * parameters[IA1];
     const ariane4_free_real_t t169 = input[0] * (ARIANE4_FREE_C(-0.004) * t66) + (t163
         + ARIANE4_FREE_C(0.116) * (t164 + t157) - t66 * t168);
-    const ariane4_free_real_t t170 = ariane4_free_sign(dq[3]);
+    const ariane4_free_real_t t170 = ariane4_free_sign(dq[3]); /* joint j4: coulomb_friction */
     const ariane4_free_real_t t171 = ARIANE4_FREE_C(1.0e2) * (ARIANE4_FREE_C(1.0e2) * dq[3] * parameters[FV4]
         + t170 * parameters[FC4]) - t148;
     const ariane4_free_real_t t172 = ARIANE4_FREE_C(5.0) * input[3] - t171;
+    /* link j4: force and moment */
     const ariane4_free_real_t t173 = parameters[MZ4] * (t136 + t129) - (parameters[MX4] * t125
         + parameters[MY4] * t133);
     const ariane4_free_real_t t174 = parameters[M4] * t104 + t173;
-    const ariane4_free_real_t t175 = t9 * t139 - t8 * t141;
+    const ariane4_free_real_t t175 = t9 * t139 - t8 * t141; /* link j4: what it passes on */
     const ariane4_free_real_t t176 = t8 * t131 - t9 * t137 - (ARIANE4_FREE_C(-0.1) * t174
         - ARIANE4_FREE_C(0.436) * t175);
+    /* link j3: force and moment */
     const ariane4_free_real_t t177 = parameters[XY3] * (t100 - t106) - t99 * (parameters[XX3]
         - parameters[YY3]) + (parameters[MY3] * t105 - parameters[MX3] * t96);
-    const ariane4_free_real_t t178 = t177 + t176;
+    const ariane4_free_real_t t178 = t177 + t176; /* link j4: what it passes on */
     const ariane4_free_real_t t179 = t7 * dq[2];
-    const ariane4_free_real_t t180 = ariane4_free_sign(t179);
+    const ariane4_free_real_t t180 = ariane4_free_sign(t179); /* joint j3: coulomb_friction */
+    /* joint j3: drive */
     const ariane4_free_real_t t181 = ARIANE4_FREE_C(7124.375926654358) * t4
         + ARIANE4_FREE_C(188.12627071923498) * (t6 * t6) * (t3 * t3);
     const ariane4_free_real_t t182 = t179 * parameters[FV3] + t180 * parameters[FC3]
         + t6 * t181 * (dq[2] * dq[2]) * parameters[IA3];
     const ariane4_free_real_t t183 = input[2] * (ARIANE4_FREE_C(0.003) * t7) + (t7 * t182 + t178)
         - t172 * t23;
+    /* link j4: what it passes on */
     const ariane4_free_real_t t184 = parameters[M3] * t105 + (parameters[MX3] * t107 - parameters[MY3] * t99)
         + t175;
     const ariane4_free_real_t t185 = parameters[M3] * t96 + (parameters[MY3] * t103 - parameters[MX3] * t99)
         + t174;
+    /* link j2: force and moment */
     const ariane4_free_real_t t186 = t94 * (parameters[XX2] - parameters[YY2]) - (t160
         - t89) * parameters[XY2] + (t92 * parameters[MX2] + t87 * parameters[MY2]);
+    /* link j3: what it passes on */
     const ariane4_free_real_t t187 = t186 - (t178 - ARIANE4_FREE_C(0.443) * (t1 * t184 + t2 * t185));
     const ariane4_free_real_t t188 = t32 * dq[1];
-    const ariane4_free_real_t t189 = ariane4_free_sign(t188);
+    const ariane4_free_real_t t189 = ariane4_free_sign(t188); /* joint j2: coulomb_friction */
+    /* joint j2: drive */
     const ariane4_free_real_t t190 = ARIANE4_FREE_C(-2656.3065671641784) * t29
         - ARIANE4_FREE_C(104.12987373940295) * (t31 * t31) * (t28 * t28);
     const ariane4_free_real_t t191 = t188 * parameters[FV2] + t189 * parameters[FC2]

@@ -24,15 +24,15 @@
  */
 #include "ariane4_free_private.h"
 
-#if ARIANE4_FREE_GENERATION != 0x261051E4UL
+#if ARIANE4_FREE_GENERATION != 0x6EBE5535UL
 #error "ariane4_free.h and ariane4_free_forward_kinematics.c are of different generations: generate the arm again"
 #endif
 
-int ariane4_free_forward_kinematics(
+ariane4_free_status_t ariane4_free_forward_kinematics(
     const ariane4_free_real_t q[ARIANE4_FREE_N_JOINTS],
     ariane4_free_real_t out[16 * ARIANE4_FREE_N_LINKS])
 {
-    int status = ARIANE4_FREE_STATUS_OK;
+    ariane4_free_status_t status = ARIANE4_FREE_STATUS_OK;
 
     if (!ariane4_free_within_joints(q, ARIANE4_FREE_C(1.0e8))) {
         status |= ARIANE4_FREE_STATUS_INPUT;
@@ -56,7 +56,7 @@ int ariane4_free_forward_kinematics(
     out[5] = t0;
     out[10] = ARIANE4_FREE_C(1.0);
     out[15] = ARIANE4_FREE_C(1.0);
-    const ariane4_free_real_t t3 = t0 * t2;
+    const ariane4_free_real_t t3 = t0 * t2; /* link j2: pose */
     out[16] = t3;
     const ariane4_free_real_t t5 = t0 * t4;
     out[17] = -t5;
@@ -73,7 +73,7 @@ int ariane4_free_forward_kinematics(
     out[24] = t4;
     out[25] = t2;
     out[31] = ARIANE4_FREE_C(1.0);
-    const ariane4_free_real_t t12 = t10 * t3 - t11 * t5;
+    const ariane4_free_real_t t12 = t10 * t3 - t11 * t5; /* link j3: pose */
     out[32] = t12;
     const ariane4_free_real_t t13 = t11 * t3 + t10 * t5;
     out[33] = -t13;
@@ -87,11 +87,11 @@ int ariane4_free_forward_kinematics(
     out[38] = -t0;
     const ariane4_free_real_t t17 = t9 + ARIANE4_FREE_C(0.443) * t7;
     out[39] = t17;
-    const ariane4_free_real_t t18 = t4 * t10 + t2 * t11;
+    const ariane4_free_real_t t18 = t4 * t10 + t2 * t11; /* link j3: motion */
     out[40] = t18;
     const ariane4_free_real_t t19 = t2 * t10 - t4 * t11;
     out[41] = t19;
-    const ariane4_free_real_t t20 = ARIANE4_FREE_C(0.443) * t4;
+    const ariane4_free_real_t t20 = ARIANE4_FREE_C(0.443) * t4; /* link j3: pose */
     out[43] = t20;
     out[47] = ARIANE4_FREE_C(1.0);
     out[48] = t21 * t12 - t1 * t22;

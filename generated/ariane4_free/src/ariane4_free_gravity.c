@@ -58,18 +58,18 @@
  */
 #include "ariane4_free_private.h"
 
-#if ARIANE4_FREE_GENERATION != 0x261051E4UL
+#if ARIANE4_FREE_GENERATION != 0x6EBE5535UL
 #error "ariane4_free.h and ariane4_free_gravity.c are of different generations: generate the arm again"
 #endif
 
-int ariane4_free_gravity(
+ariane4_free_status_t ariane4_free_gravity(
     const ariane4_free_real_t q[ARIANE4_FREE_N_JOINTS],
     const ariane4_free_real_t parameters[ARIANE4_FREE_N_PARAMETERS],
     ariane4_free_real_t out[ARIANE4_FREE_N_JOINTS])
 {
     enum { ZZ1R = 0, XX2R, XY2, XZ2R, YZ2, ZZ2R, MX2R, MY2, XX3R, XY3R, XZ3, YZ3, ZZ3R, MX3R, MY3R, XX4R, XY4,
         XZ4R, YZ4R, ZZ4, MX4, MY4, FV1, FC1, IA1, FV2, FC2, IA2, FV3, FC3, IA3, FV4, FC4, IA4 };
-    int status = ARIANE4_FREE_STATUS_OK;
+    ariane4_free_status_t status = ARIANE4_FREE_STATUS_OK;
 
     if (!ariane4_free_within_joints(q, ARIANE4_FREE_C(1.0e8))
         || !ARIANE4_FREE_PARAMETERS_USABLE(ariane4_free_within(parameters, 34, ARIANE4_FREE_C(1.0e18)))) {
@@ -93,15 +93,18 @@ int ariane4_free_gravity(
     ARIANE4_FREE_SINCOS(q[2], &t2, &t5);
     ariane4_free_real_t t10, t8;
     ARIANE4_FREE_SINCOS(q[3], &t10, &t8);
-    const ariane4_free_real_t t1 = ARIANE4_FREE_C(-9.81) * t0;
+    const ariane4_free_real_t t1 = ARIANE4_FREE_C(-9.81) * t0; /* link j2: motion */
     const ariane4_free_real_t t4 = ARIANE4_FREE_C(9.81) * t3;
-    const ariane4_free_real_t t6 = t2 * t1 + t5 * t4;
-    const ariane4_free_real_t t7 = parameters[MY4] * t6;
+    const ariane4_free_real_t t6 = t2 * t1 + t5 * t4; /* link j3: motion */
+    const ariane4_free_real_t t7 = parameters[MY4] * t6; /* link j4: force and moment */
     const ariane4_free_real_t t9 = parameters[MX4] * t6;
-    const ariane4_free_real_t t11 = t8 * t7 + t10 * t9;
-    const ariane4_free_real_t t12 = t5 * t1 - t2 * t4;
+    const ariane4_free_real_t t11 = t8 * t7 + t10 * t9; /* link j4: what it passes on */
+    const ariane4_free_real_t t12 = t5 * t1 - t2 * t4; /* link j3: motion */
+    /* link j4: force and moment */
     const ariane4_free_real_t t13 = parameters[MX4] * (t10 * t12) + parameters[MY4] * (t8 * t12);
+    /* link j2: what it passes on */
     const ariane4_free_real_t t14 = t0 * (t2 * t13 - t5 * t11) - t3 * (t2 * t11 + t5 * t13);
+    /* joint j1: drive */
     const ariane4_free_real_t
         t17 = ARIANE4_FREE_SQRT(ARIANE4_FREE_C(0.037468) * (ARIANE4_FREE_C(0.28217402066925895) * t15
         + ARIANE4_FREE_C(0.9593632378089879) * t16) + ARIANE4_FREE_C(0.10769300000000001));
@@ -109,7 +112,9 @@ int ariane4_free_gravity(
         t18 = ARIANE4_FREE_C(0.06434139546481742) * t17 / (ARIANE4_FREE_C(0.28217402066925895) * t16
         + ARIANE4_FREE_C(-0.9593632378089879) * t15);
     out[0] = t18 * t14;
+    /* link j4: what it passes on */
     const ariane4_free_real_t t19 = parameters[MX3R] * t6 + parameters[MY3R] * t12 + (t8 * t9 - t10 * t7);
+    /* joint j2: drive */
     const ariane4_free_real_t
         t20 = ARIANE4_FREE_SQRT(ARIANE4_FREE_C(0.078402) * (ARIANE4_FREE_C(-0.8305958991958126) * t3
         + ARIANE4_FREE_C(0.5568756164881881) * t0) + ARIANE4_FREE_C(0.293698));
@@ -117,6 +122,7 @@ int ariane4_free_gravity(
         t21 = ARIANE4_FREE_C(0.03137188092799786) * t20 / (ARIANE4_FREE_C(0.8305958991958126) * t0
         + ARIANE4_FREE_C(0.5568756164881881) * t3);
     out[1] = t21 * (parameters[MX2R] * t4 + parameters[MY2] * t1 + t19);
+    /* joint j3: drive */
     const ariane4_free_real_t
         t22 = ARIANE4_FREE_SQRT(ARIANE4_FREE_C(0.052812) * (ARIANE4_FREE_C(0.06366143813161289) * t5
         + ARIANE4_FREE_C(-0.9979715533496006) * t2) + ARIANE4_FREE_C(0.242037));

@@ -76,11 +76,11 @@
  */
 #include "ariane4_free_private.h"
 
-#if ARIANE4_FREE_GENERATION != 0x261051E4UL
+#if ARIANE4_FREE_GENERATION != 0x6EBE5535UL
 #error "ariane4_free.h and ariane4_free_gravity_standard.c are of different generations: generate the arm again"
 #endif
 
-int ariane4_free_gravity_standard(
+ariane4_free_status_t ariane4_free_gravity_standard(
     const ariane4_free_real_t q[ARIANE4_FREE_N_JOINTS],
     const ariane4_free_real_t parameters[ARIANE4_FREE_N_STANDARD_PARAMETERS],
     ariane4_free_real_t out[ARIANE4_FREE_N_JOINTS])
@@ -88,7 +88,7 @@ int ariane4_free_gravity_standard(
     enum { XX1 = 0, XY1, XZ1, YY1, YZ1, ZZ1, MX1, MY1, MZ1, M1, XX2, XY2, XZ2, YY2, YZ2, ZZ2, MX2, MY2, MZ2,
         M2, XX3, XY3, XZ3, YY3, YZ3, ZZ3, MX3, MY3, MZ3, M3, XX4, XY4, XZ4, YY4, YZ4, ZZ4, MX4, MY4, MZ4, M4,
         FV1, FC1, IA1, FV2, FC2, IA2, FV3, FC3, IA3, FV4, FC4, IA4 };
-    int status = ARIANE4_FREE_STATUS_OK;
+    ariane4_free_status_t status = ARIANE4_FREE_STATUS_OK;
 
     if (!ariane4_free_within_joints(q, ARIANE4_FREE_C(1.0e8))
         || !ARIANE4_FREE_PARAMETERS_USABLE(ariane4_free_within(parameters, 52, ARIANE4_FREE_C(1.0e18)))) {
@@ -112,24 +112,31 @@ int ariane4_free_gravity_standard(
     ARIANE4_FREE_SINCOS(q[2], &t2, &t5);
     ariane4_free_real_t t8, t11;
     ARIANE4_FREE_SINCOS(q[3], &t8, &t11);
-    const ariane4_free_real_t t1 = ARIANE4_FREE_C(-9.81) * t0;
+    const ariane4_free_real_t t1 = ARIANE4_FREE_C(-9.81) * t0; /* link j2: motion */
     const ariane4_free_real_t t4 = ARIANE4_FREE_C(9.81) * t3;
-    const ariane4_free_real_t t6 = t2 * t1 + t5 * t4;
+    const ariane4_free_real_t t6 = t2 * t1 + t5 * t4; /* link j3: motion */
     const ariane4_free_real_t t7 = t5 * t1 - t2 * t4;
-    const ariane4_free_real_t t9 = t8 * t7;
+    const ariane4_free_real_t t9 = t8 * t7; /* link j4: motion */
+    /* link j4: force and moment */
     const ariane4_free_real_t t10 = t9 * parameters[MZ4] - t6 * parameters[MY4];
-    const ariane4_free_real_t t12 = t11 * t7;
+    const ariane4_free_real_t t12 = t11 * t7; /* link j4: motion */
+    /* link j4: force and moment */
     const ariane4_free_real_t t13 = t12 * parameters[MZ4] + t6 * parameters[MX4];
     const ariane4_free_real_t t14 = t12 * parameters[M4];
     const ariane4_free_real_t t15 = t9 * parameters[M4];
-    const ariane4_free_real_t t16 = t8 * t14 - t11 * t15;
+    const ariane4_free_real_t t16 = t8 * t14 - t11 * t15; /* link j4: what it passes on */
     const ariane4_free_real_t t17 = t6 * parameters[MZ3] + (t11 * t10 - t8 * t13
         + ARIANE4_FREE_C(-0.436) * t16);
+    /* link j4: force and moment */
     const ariane4_free_real_t t18 = t9 * parameters[MX4] + t12 * parameters[MY4];
+    /* link j4: what it passes on */
     const ariane4_free_real_t t19 = t7 * parameters[MZ3] + (ARIANE4_FREE_C(-0.1) * t16 - t18);
+    /* link j2: what it passes on */
     const ariane4_free_real_t t20 = t0 * (t4 * parameters[MZ2] + (t5 * t17 - t2 * t19));
+    /* link j3: what it passes on */
     const ariane4_free_real_t t21 = t1 * parameters[MZ2] + (t2 * t17 + t5 * t19
         + ARIANE4_FREE_C(0.443) * t16);
+    /* joint j1: drive */
     const ariane4_free_real_t
         t24 = ARIANE4_FREE_SQRT(ARIANE4_FREE_C(0.037468) * (ARIANE4_FREE_C(0.28217402066925895) * t22
         + ARIANE4_FREE_C(0.9593632378089879) * t23) + ARIANE4_FREE_C(0.10769300000000001));
@@ -137,14 +144,17 @@ int ariane4_free_gravity_standard(
         t25 = ARIANE4_FREE_C(0.06434139546481742) * t24 / (ARIANE4_FREE_C(0.28217402066925895) * t23
         + ARIANE4_FREE_C(-0.9593632378089879) * t22);
     out[0] = t25 * (t20 + t3 * t21 + ARIANE4_FREE_C(0.116) * t16);
-    const ariane4_free_real_t t26 = t11 * t14 + t8 * t15;
-    const ariane4_free_real_t t27 = t6 * parameters[M4];
+    const ariane4_free_real_t t26 = t11 * t14 + t8 * t15; /* link j4: what it passes on */
+    const ariane4_free_real_t t27 = t6 * parameters[M4]; /* link j4: force and moment */
+    /* link j4: what it passes on */
     const ariane4_free_real_t t28 = t8 * t10 + t11 * t13 + (ARIANE4_FREE_C(-0.1) * t27
         + ARIANE4_FREE_C(0.436) * t26);
     const ariane4_free_real_t t29 = t6 * parameters[MX3] + t7 * parameters[MY3] + t28;
+    /* link j3: what it passes on */
     const ariane4_free_real_t t30 = t5 * (t6 * parameters[M3] + t27) - t2 * (t7 * parameters[M3] + t26);
     const ariane4_free_real_t t31 = t4 * parameters[MX2] + t1 * parameters[MY2] + (t29
         + ARIANE4_FREE_C(0.443) * t30);
+    /* joint j2: drive */
     const ariane4_free_real_t
         t32 = ARIANE4_FREE_SQRT(ARIANE4_FREE_C(0.078402) * (ARIANE4_FREE_C(-0.8305958991958126) * t3
         + ARIANE4_FREE_C(0.5568756164881881) * t0) + ARIANE4_FREE_C(0.293698));
@@ -152,6 +162,7 @@ int ariane4_free_gravity_standard(
         t33 = ARIANE4_FREE_C(0.03137188092799786) * t32 / (ARIANE4_FREE_C(0.8305958991958126) * t0
         + ARIANE4_FREE_C(0.5568756164881881) * t3);
     out[1] = t33 * t31;
+    /* joint j3: drive */
     const ariane4_free_real_t
         t34 = ARIANE4_FREE_SQRT(ARIANE4_FREE_C(0.052812) * (ARIANE4_FREE_C(0.06366143813161289) * t5
         + ARIANE4_FREE_C(-0.9979715533496006) * t2) + ARIANE4_FREE_C(0.242037));

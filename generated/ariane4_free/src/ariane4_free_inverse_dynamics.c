@@ -6,7 +6,7 @@
  * Arm ariane4_free, description 79391f27012d8ce4.
  * SPDX-License-Identifier: 0BSD
  *
- * Operations: 383 (223 mul, 160 add, 0 neg), 6 div, 3 sqrt, 8 trig, 4 other.
+ * Operations: 383 (223 mul, 160 add, 0 neg), 6 div, 3 sqrt, 8 trig, 4 other calls (sign, select and the like).
  *
  * @param[in]   q           [4]   [rad]      joint coordinates; norm at most 10000
  * @param[in]   dq          [4]   [rad/s]    joint velocities; norm at most 100000
@@ -60,11 +60,11 @@
  */
 #include "ariane4_free_private.h"
 
-#if ARIANE4_FREE_GENERATION != 0x261051E4UL
+#if ARIANE4_FREE_GENERATION != 0x6EBE5535UL
 #error "ariane4_free.h and ariane4_free_inverse_dynamics.c are of different generations: generate the arm again"
 #endif
 
-int ariane4_free_inverse_dynamics(
+ariane4_free_status_t ariane4_free_inverse_dynamics(
     const ariane4_free_real_t q[ARIANE4_FREE_N_JOINTS],
     const ariane4_free_real_t dq[ARIANE4_FREE_N_JOINTS],
     const ariane4_free_real_t ddq[ARIANE4_FREE_N_JOINTS],
@@ -73,7 +73,7 @@ int ariane4_free_inverse_dynamics(
 {
     enum { ZZ1R = 0, XX2R, XY2, XZ2R, YZ2, ZZ2R, MX2R, MY2, XX3R, XY3R, XZ3, YZ3, ZZ3R, MX3R, MY3R, XX4R, XY4,
         XZ4R, YZ4R, ZZ4, MX4, MY4, FV1, FC1, IA1, FV2, FC2, IA2, FV3, FC3, IA3, FV4, FC4, IA4 };
-    int status = ARIANE4_FREE_STATUS_OK;
+    ariane4_free_status_t status = ARIANE4_FREE_STATUS_OK;
 
     if (!ariane4_free_within_joints(q, ARIANE4_FREE_C(1.0e8))
         || !ariane4_free_within_joints(dq, ARIANE4_FREE_C(1.0e10))
@@ -99,104 +99,118 @@ int ariane4_free_inverse_dynamics(
     ARIANE4_FREE_SINCOS(q[2], &t3, &t1);
     ariane4_free_real_t t8, t6;
     ARIANE4_FREE_SINCOS(q[3], &t8, &t6);
-    const ariane4_free_real_t t4 = t0 * t1 + t2 * t3;
+    const ariane4_free_real_t t4 = t0 * t1 + t2 * t3; /* link j3: motion */
     const ariane4_free_real_t t5 = dq[0] * t4;
     const ariane4_free_real_t t7 = dq[1] + dq[2];
-    const ariane4_free_real_t t9 = t8 * t7 - t6 * t5;
+    const ariane4_free_real_t t9 = t8 * t7 - t6 * t5; /* link j4: motion */
     const ariane4_free_real_t t10 = t6 * t7 + t8 * t5;
     const ariane4_free_real_t t11 = t9 * t10;
-    const ariane4_free_real_t t12 = t7 * t5;
+    const ariane4_free_real_t t12 = t7 * t5; /* link j3: motion */
     const ariane4_free_real_t t13 = t0 * t3 - t2 * t1;
     const ariane4_free_real_t t14 = ddq[0] * t13;
     const ariane4_free_real_t t15 = t12 + t14;
-    const ariane4_free_real_t t16 = t15 - ddq[3];
-    const ariane4_free_real_t t17 = dq[0] * t13;
+    const ariane4_free_real_t t16 = t15 - ddq[3]; /* link j4: motion */
+    const ariane4_free_real_t t17 = dq[0] * t13; /* link j3: motion */
     const ariane4_free_real_t t18 = t5 * t17;
     const ariane4_free_real_t t19 = ddq[1] + ddq[2];
-    const ariane4_free_real_t t20 = t18 + t19;
-    const ariane4_free_real_t t21 = t7 * t17;
+    const ariane4_free_real_t t20 = t18 + t19; /* link j4: motion */
+    const ariane4_free_real_t t21 = t7 * t17; /* link j3: motion */
     const ariane4_free_real_t t22 = ddq[0] * t4;
     const ariane4_free_real_t t23 = t22 - t21;
-    const ariane4_free_real_t t24 = t23 - t21;
+    const ariane4_free_real_t t24 = t23 - t21; /* link j4: motion */
     const ariane4_free_real_t t25 = t6 * t20 + t8 * t24;
     const ariane4_free_real_t t26 = t6 * t24 - t8 * t20;
+    /* link j4: force and moment */
     const ariane4_free_real_t t27 = parameters[XZ4R] * t26 - (parameters[XX4R] * t11 + parameters[ZZ4] * t16
         + parameters[YZ4R] * t25);
-    const ariane4_free_real_t t28 = t9 * t9;
+    const ariane4_free_real_t t28 = t9 * t9; /* link j4: motion */
     const ariane4_free_real_t t29 = t10 * t10;
     const ariane4_free_real_t t30 = dq[0] * dq[0];
-    const ariane4_free_real_t t31 = ARIANE4_FREE_C(0.116) * t30;
+    const ariane4_free_real_t t31 = ARIANE4_FREE_C(0.116) * t30; /* link j2: motion */
     const ariane4_free_real_t t32 = t2 * t31 + ARIANE4_FREE_C(-9.81) * t0;
     const ariane4_free_real_t t33 = t2 * dq[0];
     const ariane4_free_real_t t34 = t33 * t33;
     const ariane4_free_real_t t35 = dq[1] * dq[1];
-    const ariane4_free_real_t t36 = t32 + ARIANE4_FREE_C(0.443) * (t35 + t34);
-    const ariane4_free_real_t t37 = ARIANE4_FREE_C(-9.81) * t2 - t0 * t31;
+    const ariane4_free_real_t t36 = t32 + ARIANE4_FREE_C(0.443) * (t35 + t34); /* link j3: motion */
+    const ariane4_free_real_t t37 = ARIANE4_FREE_C(-9.81) * t2 - t0 * t31; /* link j2: motion */
     const ariane4_free_real_t t38 = t0 * dq[0];
     const ariane4_free_real_t t39 = t38 * t33;
-    const ariane4_free_real_t t40 = ddq[1] + t39;
+    const ariane4_free_real_t t40 = ddq[1] + t39; /* link j3: motion */
     const ariane4_free_real_t t41 = t37 + ARIANE4_FREE_C(-0.443) * t40;
     const ariane4_free_real_t t42 = t1 * t36 + t3 * t41;
     const ariane4_free_real_t t43 = t17 * t17;
     const ariane4_free_real_t t44 = t7 * t7;
-    const ariane4_free_real_t t45 = t44 + t43;
+    const ariane4_free_real_t t45 = t44 + t43; /* link j4: motion */
     const ariane4_free_real_t t46 = ARIANE4_FREE_C(-0.1) * t45 + t42;
     const ariane4_free_real_t t47 = t12 + t15;
-    const ariane4_free_real_t t48 = dq[1] * t38;
+    const ariane4_free_real_t t48 = dq[1] * t38; /* link j2: motion */
     const ariane4_free_real_t t49 = t2 * ddq[0];
-    const ariane4_free_real_t t50 = t48 + (t48 - t49);
-    const ariane4_free_real_t t51 = ARIANE4_FREE_C(0.116) * ddq[0];
-    const ariane4_free_real_t t52 = t51 + ARIANE4_FREE_C(-0.443) * t50;
-    const ariane4_free_real_t t53 = t52 + ARIANE4_FREE_C(0.1) * t47;
+    const ariane4_free_real_t t50 = t48 + (t48 - t49); /* link j3: motion */
+    const ariane4_free_real_t t51 = ARIANE4_FREE_C(0.116) * ddq[0]; /* link j2: motion */
+    const ariane4_free_real_t t52 = t51 + ARIANE4_FREE_C(-0.443) * t50; /* link j3: motion */
+    const ariane4_free_real_t t53 = t52 + ARIANE4_FREE_C(0.1) * t47; /* link j4: motion */
+    /* link j4: force and moment */
     const ariane4_free_real_t t54 = parameters[MX4] * (t8 * t46 + t6 * t53) + parameters[MY4] * (t6 * t46
         - t8 * t53);
     const ariane4_free_real_t t55 = parameters[XY4] * (t28 - t29) + t27 + t54;
-    const ariane4_free_real_t t56 = dq[3] - t17;
+    const ariane4_free_real_t t56 = dq[3] - t17; /* link j4: motion */
     const ariane4_free_real_t t57 = t56 * t56;
-    const ariane4_free_real_t t58 = t11 + t16;
+    const ariane4_free_real_t t58 = t11 + t16; /* link j4: force and moment */
     const ariane4_free_real_t t59 = parameters[MX4] * (t29 + t57) - parameters[MY4] * t58;
     const ariane4_free_real_t t60 = t16 - t11;
     const ariane4_free_real_t t61 = parameters[MY4] * (t28 + t57) + parameters[MX4] * t60;
-    const ariane4_free_real_t t62 = t8 * t59 + t6 * t61;
+    const ariane4_free_real_t t62 = t8 * t59 + t6 * t61; /* link j4: what it passes on */
+    /* link j3: force and moment */
     const ariane4_free_real_t t63 = (parameters[XX3R] - parameters[ZZ3R]) * t12 + parameters[XY3R] * t24
         + parameters[YZ3] * t20;
-    const ariane4_free_real_t t64 = t5 * t5;
+    const ariane4_free_real_t t64 = t5 * t5; /* link j3: motion */
+    /* link j4: what it passes on */
     const ariane4_free_real_t t65 = parameters[MX3R] * t52 + (parameters[XZ3] * (t44 - t64) + t63) + (t55
         + ARIANE4_FREE_C(0.1) * t62);
-    const ariane4_free_real_t t66 = t10 * t56;
+    const ariane4_free_real_t t66 = t10 * t56; /* link j4: motion */
     const ariane4_free_real_t t67 = t26 - t66;
     const ariane4_free_real_t t68 = t9 * t56;
-    const ariane4_free_real_t t69 = t25 - t68 - t68;
+    const ariane4_free_real_t t69 = t25 - t68 - t68; /* link j4: force and moment */
     const ariane4_free_real_t t70 = parameters[ZZ4] * t66 - parameters[XX4R] * t67 + parameters[XY4] * t69
         + parameters[XZ4R] * t60;
-    const ariane4_free_real_t t71 = t1 * t41 - t3 * t36;
-    const ariane4_free_real_t t72 = t19 - t18;
+    const ariane4_free_real_t t71 = t1 * t41 - t3 * t36; /* link j3: motion */
+    const ariane4_free_real_t t72 = t19 - t18; /* link j4: motion */
     const ariane4_free_real_t t73 = t71 + ARIANE4_FREE_C(0.1) * t72;
+    /* link j4: force and moment */
     const ariane4_free_real_t t74 = parameters[YZ4R] * (t57 - t29) + t70 + parameters[MY4] * t73;
     const ariane4_free_real_t t75 = t67 - t66;
     const ariane4_free_real_t t76 = (parameters[XX4R] - parameters[ZZ4]) * t68 - parameters[XY4] * t75
         + parameters[YZ4R] * t58;
     const ariane4_free_real_t t77 = parameters[XZ4R] * (t28 - t57) + t76 - parameters[MX4] * t73;
+    /* link j3: force and moment */
     const ariane4_free_real_t t78 = parameters[ZZ3R] * t21 - parameters[XX3R] * t23 + parameters[XY3R] * t47
         - parameters[XZ3] * t72;
+    /* link j4: what it passes on */
     const ariane4_free_real_t t79 = parameters[MY3R] * t52 + (parameters[YZ3] * (t44 - t43) + t78) + (t6 * t74
         - t8 * t77);
-    const ariane4_free_real_t t80 = dq[1] * t33;
+    const ariane4_free_real_t t80 = dq[1] * t33; /* link j2: motion */
     const ariane4_free_real_t t81 = t0 * ddq[0];
     const ariane4_free_real_t t82 = t80 + t81;
+    /* link j2: force and moment */
     const ariane4_free_real_t t83 = parameters[XY2] * t50 - (parameters[ZZ2R] * t80 + parameters[XX2R] * t82)
         - parameters[XZ2R] * t40;
+    /* link j3: what it passes on */
     const ariane4_free_real_t t84 = parameters[YZ2] * (t35 - t34) + t83 + parameters[MY2] * t51 + (t1 * t79
         + t3 * t65);
+    /* link j4: what it passes on */
     const ariane4_free_real_t t85 = parameters[MX3R] * t47 + parameters[MY3R] * t24 + t62;
-    const ariane4_free_real_t t86 = t80 + t82;
+    const ariane4_free_real_t t86 = t80 + t82; /* link j3: motion */
+    /* link j2: force and moment */
     const ariane4_free_real_t t87 = t48 * (parameters[ZZ2R] - parameters[XX2R]) - parameters[XY2] * t86
         + parameters[YZ2] * (t39 - ddq[1]);
-    const ariane4_free_real_t t88 = t38 * t38;
+    const ariane4_free_real_t t88 = t38 * t38; /* link j2: motion */
+    /* link j3: what it passes on */
     const ariane4_free_real_t t89 = parameters[XZ2R] * (t88 - t35) + t87 - parameters[MX2R] * t51 + (t3 * t79
         - t1 * t65 + ARIANE4_FREE_C(0.443) * t85);
+    /* link j2: what it passes on */
     const ariane4_free_real_t t90 = t0 * t84 + t2 * t89 + ARIANE4_FREE_C(0.116) * (parameters[MX2R] * t50
         + parameters[MY2] * t86 + t85);
+    /* joint j1: drive */
     const ariane4_free_real_t t93 = ARIANE4_FREE_C(0.28217402066925895) * t91
         + ARIANE4_FREE_C(0.9593632378089879) * t92;
     const ariane4_free_real_t t94 = ARIANE4_FREE_SQRT(ARIANE4_FREE_C(0.037468) * t93
@@ -207,24 +221,31 @@ int ariane4_free_inverse_dynamics(
     const ariane4_free_real_t t97 = ARIANE4_FREE_C(-1.0) / t94;
     const ariane4_free_real_t t98 = t95 * (ARIANE4_FREE_C(3885.523436256565) * t97);
     const ariane4_free_real_t t99 = t98 * dq[0];
-    const ariane4_free_real_t t100 = ariane4_free_sign(t99);
+    const ariane4_free_real_t t100 = ariane4_free_sign(t99); /* joint j1: coulomb_friction */
+    /* joint j1: drive */
     const ariane4_free_real_t t101 = ARIANE4_FREE_C(-3885.523436256565) * t93
         + ARIANE4_FREE_C(-72.7913960548305) * (t97 * t97) * (t95 * t95);
     const ariane4_free_real_t t102 = parameters[FV1] * t99 + parameters[FC1] * t100
         + parameters[IA1] * (t97 * t101 * t30 + t98 * ddq[0]);
     out[0] = ARIANE4_FREE_C(-250.0) * t102 + t96 * (t90 - parameters[ZZ1R] * ddq[0]);
+    /* link j4: force and moment */
     const ariane4_free_real_t t103 = parameters[MX4] * t69 + parameters[MY4] * t75;
+    /* link j3: force and moment */
     const ariane4_free_real_t t104 = parameters[XX3R] * t18 + parameters[ZZ3R] * t19 - parameters[YZ3] * t14
         + parameters[XZ3] * t22;
     const ariane4_free_real_t t105 = parameters[MY3R] * t42 - parameters[MX3R] * t71
         + (parameters[XY3R] * (t64 - t43) + t104);
+    /* link j4: what it passes on */
     const ariane4_free_real_t t106 = t105 + (t8 * t74 + t6 * t77 + ARIANE4_FREE_C(-0.1) * t103);
     const ariane4_free_real_t t107 = t8 * t61 - t6 * t59 - (parameters[MX3R] * t45 + parameters[MY3R] * t20);
+    /* link j3: what it passes on */
     const ariane4_free_real_t t108 = t1 * (parameters[MX3R] * t72 - parameters[MY3R] * (t44 + t64) + t103);
+    /* link j2: force and moment */
     const ariane4_free_real_t t109 = parameters[ZZ2R] * ddq[1] - parameters[XX2R] * t39
         + parameters[YZ2] * t49 + parameters[XZ2R] * t81;
     const ariane4_free_real_t t110 = parameters[MY2] * t32 - parameters[MX2R] * t37 + (parameters[XY2] * (t88
         - t34) + t109);
+    /* joint j2: drive */
     const ariane4_free_real_t t111 = ARIANE4_FREE_C(0.8305958991958126) * t2
         - ARIANE4_FREE_C(0.5568756164881881) * t0;
     const ariane4_free_real_t t112 = ARIANE4_FREE_SQRT(ARIANE4_FREE_C(-0.078402) * t111
@@ -236,12 +257,14 @@ int ariane4_free_inverse_dynamics(
     const ariane4_free_real_t t116 = ARIANE4_FREE_C(1.0) / t112;
     const ariane4_free_real_t t117 = t113 * (ARIANE4_FREE_C(2656.3065671641784) * t116);
     const ariane4_free_real_t t118 = t117 * dq[1];
-    const ariane4_free_real_t t119 = ariane4_free_sign(t118);
+    const ariane4_free_real_t t119 = ariane4_free_sign(t118); /* joint j2: coulomb_friction */
+    /* joint j2: drive */
     const ariane4_free_real_t t120 = ARIANE4_FREE_C(2656.3065671641784) * t111
         + ARIANE4_FREE_C(-104.12987373940295) * (t116 * t116) * (t113 * t113);
     const ariane4_free_real_t t121 = parameters[FV2] * t118 + parameters[FC2] * t119
         + parameters[IA2] * (t116 * t120 * t35 + t117 * ddq[1]);
     out[1] = ARIANE4_FREE_C(83.33333333333333) * t121 + t115;
+    /* joint j3: drive */
     const ariane4_free_real_t t122 = ARIANE4_FREE_C(0.06366143813161289) * t1
         - ARIANE4_FREE_C(0.9979715533496006) * t3;
     const ariane4_free_real_t t123 = ARIANE4_FREE_SQRT(ARIANE4_FREE_C(0.052812) * t122
@@ -252,14 +275,16 @@ int ariane4_free_inverse_dynamics(
     const ariane4_free_real_t t126 = ARIANE4_FREE_C(-1.0) / t123;
     const ariane4_free_real_t t127 = t124 * (ARIANE4_FREE_C(7124.375926654358) * t126);
     const ariane4_free_real_t t128 = t127 * dq[2];
-    const ariane4_free_real_t t129 = ariane4_free_sign(t128);
+    const ariane4_free_real_t t129 = ariane4_free_sign(t128); /* joint j3: coulomb_friction */
+    /* joint j3: drive */
     const ariane4_free_real_t t130 = ARIANE4_FREE_C(-7124.375926654358) * t122
         + ARIANE4_FREE_C(-188.12627071923498) * (t126 * t126) * (t124 * t124);
+    /* joint j3: drive_inertia */
     const ariane4_free_real_t t131 = parameters[IA3] * (t126 * t130 * (dq[2] * dq[2]) + t127 * ddq[2]);
     const ariane4_free_real_t t132 = ARIANE4_FREE_C(-333.3333333333333) * (parameters[FV3] * t128
         + parameters[FC3] * t129 + t131) - t125 * t106;
     out[2] = t132;
-    const ariane4_free_real_t t133 = ariane4_free_sign(dq[3]);
+    const ariane4_free_real_t t133 = ariane4_free_sign(dq[3]); /* joint j4: coulomb_friction */
     const ariane4_free_real_t t134 = parameters[FV4] * (ARIANE4_FREE_C(1.0e2) * dq[3])
         + parameters[FC4] * t133 + parameters[IA4] * (ARIANE4_FREE_C(1.0e2) * ddq[3]);
     out[3] = ARIANE4_FREE_C(20.0) * t134 + ARIANE4_FREE_C(0.2) * t55;

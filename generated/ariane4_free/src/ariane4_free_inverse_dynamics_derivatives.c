@@ -7,16 +7,16 @@
  * Arm ariane4_free, description 79391f27012d8ce4.
  * SPDX-License-Identifier: 0BSD
  *
- * Operations: 1390 (824 mul, 562 add, 4 neg), 12 div, 3 sqrt, 8 trig, 7 other.
+ * Operations: 1390 (824 mul, 562 add, 4 neg), 12 div, 3 sqrt, 8 trig, 7 other calls (sign, select and the like).
  *
- * @param[in]   q             [4]   [rad]                joint coordinates; norm at most 10000
- * @param[in]   dq            [4]   [rad/s]              joint velocities; norm at most 100000
- * @param[in]   ddq           [4]   [rad/s^2]            joint accelerations; norm at most 1e+08
- * @param[in]   parameters    [34]                       base parameters; norm at most 1e+09
- * @param[out]  input         [4]   [A]                  inputs: motor currents, efforts where undriven
- * @param[out]  input_by_q    [16]  [(A) per (rad)]      d input / d q; 4 x 4, row-major
- * @param[out]  input_by_dq   [16]  [(A) per (rad/s)]    d input / d dq; 4 x 4, row-major
- * @param[out]  input_by_ddq  [16]  [(A) per (rad/s^2)]  d input / d ddq; 4 x 4, row-major
+ * @param[in]   q             [4]   [rad]              joint coordinates; norm at most 10000
+ * @param[in]   dq            [4]   [rad/s]            joint velocities; norm at most 100000
+ * @param[in]   ddq           [4]   [rad/s^2]          joint accelerations; norm at most 1e+08
+ * @param[in]   parameters    [34]                     base parameters; norm at most 1e+09
+ * @param[out]  input         [4]   [A]                inputs: motor currents, efforts where undriven
+ * @param[out]  input_by_q    [16]  [A per rad]        d input / d q; 4 x 4, row-major
+ * @param[out]  input_by_dq   [16]  [A per (rad/s)]    d input / d dq; 4 x 4, row-major
+ * @param[out]  input_by_ddq  [16]  [A per (rad/s^2)]  d input / d ddq; 4 x 4, row-major
  *
  * Coordinates:
  *
@@ -64,11 +64,11 @@
  */
 #include "ariane4_free_private.h"
 
-#if ARIANE4_FREE_GENERATION != 0x261051E4UL
+#if ARIANE4_FREE_GENERATION != 0x6EBE5535UL
 #error "ariane4_free.h and ariane4_free_inverse_dynamics_derivatives.c are of different generations: generate the arm again"
 #endif
 
-int ariane4_free_inverse_dynamics_derivatives(
+ariane4_free_status_t ariane4_free_inverse_dynamics_derivatives(
     const ariane4_free_real_t q[ARIANE4_FREE_N_JOINTS],
     const ariane4_free_real_t dq[ARIANE4_FREE_N_JOINTS],
     const ariane4_free_real_t ddq[ARIANE4_FREE_N_JOINTS],
@@ -80,7 +80,7 @@ int ariane4_free_inverse_dynamics_derivatives(
 {
     enum { ZZ1R = 0, XX2R, XY2, XZ2R, YZ2, ZZ2R, MX2R, MY2, XX3R, XY3R, XZ3, YZ3, ZZ3R, MX3R, MY3R, XX4R, XY4,
         XZ4R, YZ4R, ZZ4, MX4, MY4, FV1, FC1, IA1, FV2, FC2, IA2, FV3, FC3, IA3, FV4, FC4, IA4 };
-    int status = ARIANE4_FREE_STATUS_OK;
+    ariane4_free_status_t status = ARIANE4_FREE_STATUS_OK;
 
     if (!ariane4_free_within_joints(q, ARIANE4_FREE_C(1.0e8))
         || !ariane4_free_within_joints(dq, ARIANE4_FREE_C(1.0e10))
@@ -109,106 +109,120 @@ int ariane4_free_inverse_dynamics_derivatives(
     ARIANE4_FREE_SINCOS(q[2], &t3, &t1);
     ariane4_free_real_t t8, t6;
     ARIANE4_FREE_SINCOS(q[3], &t8, &t6);
-    const ariane4_free_real_t t4 = t0 * t1 + t2 * t3;
+    const ariane4_free_real_t t4 = t0 * t1 + t2 * t3; /* link j3: motion */
     const ariane4_free_real_t t5 = dq[0] * t4;
     const ariane4_free_real_t t7 = dq[1] + dq[2];
-    const ariane4_free_real_t t9 = t8 * t7 - t6 * t5;
+    const ariane4_free_real_t t9 = t8 * t7 - t6 * t5; /* link j4: motion */
     const ariane4_free_real_t t10 = t6 * t7 + t8 * t5;
     const ariane4_free_real_t t11 = t9 * t10;
-    const ariane4_free_real_t t12 = t7 * t5;
+    const ariane4_free_real_t t12 = t7 * t5; /* link j3: motion */
     const ariane4_free_real_t t13 = t2 * t1 - t0 * t3;
     const ariane4_free_real_t t14 = ddq[0] * t13;
     const ariane4_free_real_t t15 = t14 - t12;
-    const ariane4_free_real_t t16 = ddq[3] + t15;
-    const ariane4_free_real_t t17 = dq[0] * t13;
+    const ariane4_free_real_t t16 = ddq[3] + t15; /* link j4: motion */
+    const ariane4_free_real_t t17 = dq[0] * t13; /* link j3: motion */
     const ariane4_free_real_t t18 = t5 * t17;
     const ariane4_free_real_t t19 = ddq[1] + ddq[2];
-    const ariane4_free_real_t t20 = t18 - t19;
-    const ariane4_free_real_t t21 = t7 * t17;
+    const ariane4_free_real_t t20 = t18 - t19; /* link j4: motion */
+    const ariane4_free_real_t t21 = t7 * t17; /* link j3: motion */
     const ariane4_free_real_t t22 = ddq[0] * t4;
     const ariane4_free_real_t t23 = t21 + t22;
-    const ariane4_free_real_t t24 = t21 + t23;
+    const ariane4_free_real_t t24 = t21 + t23; /* link j4: motion */
     const ariane4_free_real_t t25 = t6 * t20 - t8 * t24;
     const ariane4_free_real_t t26 = t8 * t20 + t6 * t24;
+    /* link j4: force and moment */
     const ariane4_free_real_t t27 = parameters[ZZ4] * t16 - parameters[XX4R] * t11 + parameters[YZ4R] * t25
         + parameters[XZ4R] * t26;
-    const ariane4_free_real_t t28 = t9 * t9;
+    const ariane4_free_real_t t28 = t9 * t9; /* link j4: motion */
     const ariane4_free_real_t t29 = t10 * t10;
     const ariane4_free_real_t t30 = dq[0] * dq[0];
-    const ariane4_free_real_t t31 = ARIANE4_FREE_C(-0.116) * t30;
+    const ariane4_free_real_t t31 = ARIANE4_FREE_C(-0.116) * t30; /* link j2: motion */
     const ariane4_free_real_t t32 = t2 * t31 + ARIANE4_FREE_C(9.81) * t0;
     const ariane4_free_real_t t33 = t2 * dq[0];
     const ariane4_free_real_t t34 = t33 * t33;
     const ariane4_free_real_t t35 = dq[1] * dq[1];
-    const ariane4_free_real_t t36 = ARIANE4_FREE_C(0.443) * (t35 + t34) - t32;
-    const ariane4_free_real_t t37 = t0 * t31 + ARIANE4_FREE_C(-9.81) * t2;
+    const ariane4_free_real_t t36 = ARIANE4_FREE_C(0.443) * (t35 + t34) - t32; /* link j3: motion */
+    const ariane4_free_real_t t37 = t0 * t31 + ARIANE4_FREE_C(-9.81) * t2; /* link j2: motion */
     const ariane4_free_real_t t38 = t0 * dq[0];
     const ariane4_free_real_t t39 = t38 * t33;
-    const ariane4_free_real_t t40 = ddq[1] + t39;
+    const ariane4_free_real_t t40 = ddq[1] + t39; /* link j3: motion */
     const ariane4_free_real_t t41 = t37 + ARIANE4_FREE_C(-0.443) * t40;
     const ariane4_free_real_t t42 = t1 * t36 + t3 * t41;
     const ariane4_free_real_t t43 = t17 * t17;
     const ariane4_free_real_t t44 = t7 * t7;
-    const ariane4_free_real_t t45 = t44 + t43;
+    const ariane4_free_real_t t45 = t44 + t43; /* link j4: motion */
     const ariane4_free_real_t t46 = ARIANE4_FREE_C(-0.1) * t45 + t42;
     const ariane4_free_real_t t47 = t15 - t12;
-    const ariane4_free_real_t t48 = dq[1] * t38;
+    const ariane4_free_real_t t48 = dq[1] * t38; /* link j2: motion */
     const ariane4_free_real_t t49 = t2 * ddq[0];
-    const ariane4_free_real_t t50 = t48 + (t48 - t49);
-    const ariane4_free_real_t t51 = ARIANE4_FREE_C(0.116) * ddq[0];
-    const ariane4_free_real_t t52 = ARIANE4_FREE_C(0.443) * t50 - t51;
-    const ariane4_free_real_t t53 = t52 + ARIANE4_FREE_C(0.1) * t47;
+    const ariane4_free_real_t t50 = t48 + (t48 - t49); /* link j3: motion */
+    const ariane4_free_real_t t51 = ARIANE4_FREE_C(0.116) * ddq[0]; /* link j2: motion */
+    const ariane4_free_real_t t52 = ARIANE4_FREE_C(0.443) * t50 - t51; /* link j3: motion */
+    const ariane4_free_real_t t53 = t52 + ARIANE4_FREE_C(0.1) * t47; /* link j4: motion */
     const ariane4_free_real_t t54 = t6 * t53 - t8 * t46;
     const ariane4_free_real_t t55 = t6 * t46 + t8 * t53;
+    /* link j4: force and moment */
     const ariane4_free_real_t t56 = parameters[XY4] * (t28 - t29) + t27 + (parameters[MY4] * t55
         - parameters[MX4] * t54);
-    const ariane4_free_real_t t57 = dq[3] + t17;
+    const ariane4_free_real_t t57 = dq[3] + t17; /* link j4: motion */
     const ariane4_free_real_t t58 = t57 * t57;
-    const ariane4_free_real_t t59 = t16 - t11;
+    const ariane4_free_real_t t59 = t16 - t11; /* link j4: force and moment */
     const ariane4_free_real_t t60 = parameters[MX4] * (t29 + t58) + parameters[MY4] * t59;
     const ariane4_free_real_t t61 = t11 + t16;
     const ariane4_free_real_t t62 = parameters[MY4] * (t28 + t58) - parameters[MX4] * t61;
-    const ariane4_free_real_t t63 = t8 * t60 + t6 * t62;
+    const ariane4_free_real_t t63 = t8 * t60 + t6 * t62; /* link j4: what it passes on */
+    /* link j3: force and moment */
     const ariane4_free_real_t t64 = (parameters[XX3R] - parameters[ZZ3R]) * t12 + parameters[XY3R] * t24
         - parameters[YZ3] * t20;
-    const ariane4_free_real_t t65 = t5 * t5;
+    const ariane4_free_real_t t65 = t5 * t5; /* link j3: motion */
+    /* link j4: what it passes on */
     const ariane4_free_real_t t66 = parameters[XZ3] * (t44 - t65) + t64 - parameters[MX3R] * t52 + (t56
         + ARIANE4_FREE_C(0.1) * t63);
-    const ariane4_free_real_t t67 = t10 * t57;
+    const ariane4_free_real_t t67 = t10 * t57; /* link j4: motion */
     const ariane4_free_real_t t68 = t67 - t26;
     const ariane4_free_real_t t69 = t9 * t57;
-    const ariane4_free_real_t t70 = t69 + (t69 + t25);
+    const ariane4_free_real_t t70 = t69 + (t69 + t25); /* link j4: force and moment */
     const ariane4_free_real_t t71 = parameters[ZZ4] * t67 + parameters[XX4R] * t68 - parameters[XY4] * t70
         - parameters[XZ4R] * t61;
-    const ariane4_free_real_t t72 = t1 * t41 - t3 * t36;
-    const ariane4_free_real_t t73 = t18 + t19;
+    const ariane4_free_real_t t72 = t1 * t41 - t3 * t36; /* link j3: motion */
+    const ariane4_free_real_t t73 = t18 + t19; /* link j4: motion */
     const ariane4_free_real_t t74 = t72 + ARIANE4_FREE_C(0.1) * t73;
+    /* link j4: force and moment */
     const ariane4_free_real_t t75 = parameters[YZ4R] * (t29 - t58) - t71 - parameters[MY4] * t74;
     const ariane4_free_real_t t76 = t67 + t68;
     const ariane4_free_real_t t77 = (parameters[ZZ4] - parameters[XX4R]) * t69 - parameters[XY4] * t76
         + parameters[YZ4R] * t59;
     const ariane4_free_real_t t78 = parameters[XZ4R] * (t58 - t28) + t77 + parameters[MX4] * t74;
+    /* link j3: force and moment */
     const ariane4_free_real_t t79 = parameters[ZZ3R] * t21 + parameters[XX3R] * t23 + parameters[XY3R] * t47
         + parameters[XZ3] * t73;
+    /* link j4: what it passes on */
     const ariane4_free_real_t t80 = parameters[YZ3] * (t44 - t43) - t79 - parameters[MY3R] * t52 - (t6 * t75
         - t8 * t78);
-    const ariane4_free_real_t t81 = dq[1] * t33;
+    const ariane4_free_real_t t81 = dq[1] * t33; /* link j2: motion */
     const ariane4_free_real_t t82 = t0 * ddq[0];
     const ariane4_free_real_t t83 = t81 + t82;
+    /* link j2: force and moment */
     const ariane4_free_real_t t84 = parameters[XY2] * t50 - (parameters[ZZ2R] * t81 + parameters[XX2R] * t83)
         - parameters[XZ2R] * t40;
+    /* link j3: what it passes on */
     const ariane4_free_real_t t85 = parameters[YZ2] * (t35 - t34) + t84 + parameters[MY2] * t51 + (t1 * t80
         + t3 * t66);
+    /* link j4: what it passes on */
     const ariane4_free_real_t t86 = parameters[MX3R] * t47 - parameters[MY3R] * t24 - t63;
-    const ariane4_free_real_t t87 = t81 + t83;
+    const ariane4_free_real_t t87 = t81 + t83; /* link j3: motion */
+    /* link j2: force and moment */
     const ariane4_free_real_t t88 = t48 * (parameters[XX2R] - parameters[ZZ2R]) + parameters[XY2] * t87
         + parameters[YZ2] * (ddq[1] - t39);
-    const ariane4_free_real_t t89 = t38 * t38;
+    const ariane4_free_real_t t89 = t38 * t38; /* link j2: motion */
+    /* link j3: what it passes on */
     const ariane4_free_real_t t90 = parameters[XZ2R] * (t35 - t89) + t88 + parameters[MX2R] * t51 + (t1 * t66
         - t3 * t80 + ARIANE4_FREE_C(0.443) * t86);
+    /* link j2: what it passes on */
     const ariane4_free_real_t t91 = t0 * t85 - t2 * t90 + ARIANE4_FREE_C(0.116) * (parameters[MX2R] * t50
         + parameters[MY2] * t87 - t86);
     const ariane4_free_real_t t92 = parameters[ZZ1R] * ddq[0] - t91;
+    /* joint j1: drive */
     const ariane4_free_real_t t95 = ARIANE4_FREE_C(-0.28217402066925895) * t93
         + ARIANE4_FREE_C(-0.9593632378089879) * t94;
     const ariane4_free_real_t t96 = ARIANE4_FREE_SQRT(ARIANE4_FREE_C(-0.037468) * t95
@@ -220,27 +234,33 @@ int ariane4_free_inverse_dynamics_derivatives(
     const ariane4_free_real_t t100 = ARIANE4_FREE_C(3885.523436256565) * t99;
     const ariane4_free_real_t t101 = t97 * t100;
     const ariane4_free_real_t t102 = t101 * dq[0];
-    const ariane4_free_real_t t103 = ariane4_free_sign(t102);
-    const ariane4_free_real_t t104 = ARIANE4_FREE_C(-72.7913960548305) * (t99 * t99);
+    const ariane4_free_real_t t103 = ariane4_free_sign(t102); /* joint j1: coulomb_friction */
+    const ariane4_free_real_t t104 = ARIANE4_FREE_C(-72.7913960548305) * (t99 * t99); /* joint j1: drive */
     const ariane4_free_real_t t105 = t97 * t97;
     const ariane4_free_real_t t106 = ARIANE4_FREE_C(3885.523436256565) * t95 + t104 * t105;
     const ariane4_free_real_t t107 = t99 * t106;
     const ariane4_free_real_t t108 = parameters[FV1] * t102 + parameters[FC1] * t103
         + parameters[IA1] * (t107 * t30 + t101 * ddq[0]);
     input[0] = ARIANE4_FREE_C(-250.0) * t108 - t98 * t92;
+    /* link j4: force and moment */
     const ariane4_free_real_t t109 = parameters[MX4] * t70 + parameters[MY4] * t76;
+    /* link j3: force and moment */
     const ariane4_free_real_t t110 = parameters[ZZ3R] * t19 - parameters[XX3R] * t18 + parameters[YZ3] * t14
         + parameters[XZ3] * t22;
     const ariane4_free_real_t t111 = parameters[MY3R] * t42 - parameters[MX3R] * t72
         + (parameters[XY3R] * (t65 - t43) + t110);
+    /* link j4: what it passes on */
     const ariane4_free_real_t t112 = t111 - (t8 * t75 + t6 * t78 - ARIANE4_FREE_C(0.1) * t109);
     const ariane4_free_real_t t113 = parameters[MY3R] * t20 - parameters[MX3R] * t45 + (t8 * t62 - t6 * t60);
     const ariane4_free_real_t t114 = parameters[MY3R] * (t44 + t65) - parameters[MX3R] * t73 + t109;
+    /* link j2: force and moment */
     const ariane4_free_real_t t115 = parameters[XX2R] * t39 - parameters[ZZ2R] * ddq[1]
         - parameters[YZ2] * t49 - parameters[XZ2R] * t82;
     const ariane4_free_real_t t116 = parameters[XY2] * (t89 - t34) - t115 - (parameters[MX2R] * t37
         + parameters[MY2] * t32);
+    /* link j3: what it passes on */
     const ariane4_free_real_t t117 = t116 + (t112 - ARIANE4_FREE_C(0.443) * (t1 * t114 - t3 * t113));
+    /* joint j2: drive */
     const ariane4_free_real_t t118 = ARIANE4_FREE_C(-0.8305958991958126) * t2
         + ARIANE4_FREE_C(0.5568756164881881) * t0;
     const ariane4_free_real_t t119 = ARIANE4_FREE_SQRT(ARIANE4_FREE_C(0.078402) * t118
@@ -252,7 +272,8 @@ int ariane4_free_inverse_dynamics_derivatives(
     const ariane4_free_real_t t123 = ARIANE4_FREE_C(-2656.3065671641784) * t122;
     const ariane4_free_real_t t124 = t120 * t123;
     const ariane4_free_real_t t125 = t124 * dq[1];
-    const ariane4_free_real_t t126 = ariane4_free_sign(t125);
+    const ariane4_free_real_t t126 = ariane4_free_sign(t125); /* joint j2: coulomb_friction */
+    /* joint j2: drive */
     const ariane4_free_real_t t127 = ARIANE4_FREE_C(-104.12987373940295) * (t122 * t122);
     const ariane4_free_real_t t128 = t120 * t120;
     const ariane4_free_real_t t129 = ARIANE4_FREE_C(-2656.3065671641784) * t118 + t127 * t128;
@@ -260,6 +281,7 @@ int ariane4_free_inverse_dynamics_derivatives(
     const ariane4_free_real_t t131 = parameters[FV2] * t125 + parameters[FC2] * t126
         + parameters[IA2] * (t124 * ddq[1] - t130 * t35);
     input[1] = ARIANE4_FREE_C(83.33333333333333) * t131 + t121 * t117;
+    /* joint j3: drive */
     const ariane4_free_real_t t132 = ARIANE4_FREE_C(-0.06366143813161289) * t1
         + ARIANE4_FREE_C(0.9979715533496006) * t3;
     const ariane4_free_real_t t133 = ARIANE4_FREE_SQRT(ARIANE4_FREE_C(-0.052812) * t132
@@ -271,7 +293,8 @@ int ariane4_free_inverse_dynamics_derivatives(
     const ariane4_free_real_t t137 = ARIANE4_FREE_C(7124.375926654358) * t136;
     const ariane4_free_real_t t138 = t134 * t137;
     const ariane4_free_real_t t139 = t138 * dq[2];
-    const ariane4_free_real_t t140 = ariane4_free_sign(t139);
+    const ariane4_free_real_t t140 = ariane4_free_sign(t139); /* joint j3: coulomb_friction */
+    /* joint j3: drive */
     const ariane4_free_real_t t141 = ARIANE4_FREE_C(-188.12627071923498) * (t136 * t136);
     const ariane4_free_real_t t142 = t134 * t134;
     const ariane4_free_real_t t143 = ARIANE4_FREE_C(7124.375926654358) * t132 + t141 * t142;
@@ -280,7 +303,7 @@ int ariane4_free_inverse_dynamics_derivatives(
     const ariane4_free_real_t t146 = parameters[FV3] * t139 + parameters[FC3] * t140
         + parameters[IA3] * (t144 * t145 + t138 * ddq[2]);
     input[2] = ARIANE4_FREE_C(-333.3333333333333) * t146 - t135 * t112;
-    const ariane4_free_real_t t147 = ariane4_free_sign(dq[3]);
+    const ariane4_free_real_t t147 = ariane4_free_sign(dq[3]); /* joint j4: coulomb_friction */
     const ariane4_free_real_t t148 = parameters[FV4] * (ARIANE4_FREE_C(1.0e2) * dq[3])
         + parameters[FC4] * t147 + parameters[IA4] * (ARIANE4_FREE_C(1.0e2) * ddq[3]);
     input[3] = ARIANE4_FREE_C(20.0) * t148 + ARIANE4_FREE_C(0.2) * t56;
@@ -309,15 +332,17 @@ int ariane4_free_inverse_dynamics_derivatives(
     const ariane4_free_real_t t165 = t164 - parameters[XX4R];
     const ariane4_free_real_t t166 = parameters[XZ4R] * t9 - t57 * t165;
     const ariane4_free_real_t t167 = t57 * t164 - parameters[YZ4R] * t10;
+    /* link j4: inertia, momentum beyond */
     const ariane4_free_real_t t168 = t6 * (t161 + t163) + t8 * (t166 + t167);
     const ariane4_free_real_t t169 = t6 * t168;
     const ariane4_free_real_t t170 = parameters[MY4] * t57;
     const ariane4_free_real_t t171 = parameters[MX4] * t57;
     const ariane4_free_real_t t172 = t6 * t170 + t8 * t171;
     const ariane4_free_real_t t173 = ARIANE4_FREE_C(0.1) * t172;
+    /* link j4: column of the mass matrix */
     const ariane4_free_real_t t174 = t6 * parameters[MY4] + t8 * parameters[MX4];
     const ariane4_free_real_t t175 = ARIANE4_FREE_C(0.1) * t17;
-    const ariane4_free_real_t t176 = t174 * t175;
+    const ariane4_free_real_t t176 = t174 * t175; /* link j4: inertia, momentum beyond */
     const ariane4_free_real_t t177 = t173 - t176;
     const ariane4_free_real_t t178 = parameters[XZ3] * t17;
     const ariane4_free_real_t t179 = parameters[XY3R] * t7;
@@ -333,23 +358,27 @@ int ariane4_free_inverse_dynamics_derivatives(
     const ariane4_free_real_t t189 = parameters[XY4] * t9 + t10 * t165;
     const ariane4_free_real_t t190 = t9 * t164 + parameters[XY4] * t10;
     const ariane4_free_real_t t191 = parameters[MY4] * t9 - parameters[MX4] * t10;
+    /* link j4: column of the mass matrix */
     const ariane4_free_real_t t192 = t8 * parameters[MY4] - t6 * parameters[MX4];
-    const ariane4_free_real_t t193 = ARIANE4_FREE_C(0.1) * t7;
+    const ariane4_free_real_t t193 = ARIANE4_FREE_C(0.1) * t7; /* link j4: velocity of its origin */
+    /* link j4: inertia, momentum beyond */
     const ariane4_free_real_t t194 = t6 * t189 + t8 * t190 + (ARIANE4_FREE_C(0.1) * t191 + t192 * t193);
     const ariane4_free_real_t t195 = parameters[XX3R] - t187;
     const ariane4_free_real_t t196 = t7 * t195 - parameters[XZ3] * t5 - t194;
+    /* link j3: inertia, momentum beyond */
     const ariane4_free_real_t t197 = t1 * (t180 + t183) + t3 * (t188 + t196);
     const ariane4_free_real_t t198 = t1 * t197;
-    const ariane4_free_real_t t199 = parameters[MY3R] * t7 + t172;
+    const ariane4_free_real_t t199 = parameters[MY3R] * t7 + t172; /* link j4: inertia, momentum beyond */
     const ariane4_free_real_t t200 = t191 - parameters[MX3R] * t7;
-    const ariane4_free_real_t t201 = t1 * t199 - t3 * t200;
+    const ariane4_free_real_t t201 = t1 * t199 - t3 * t200; /* link j3: inertia, momentum beyond */
     const ariane4_free_real_t t202 = ARIANE4_FREE_C(0.443) * t201;
-    const ariane4_free_real_t t203 = parameters[MX3R] - t192;
+    const ariane4_free_real_t t203 = parameters[MX3R] - t192; /* link j4: inertia of it and all beyond */
+    /* link j3: column of the mass matrix */
     const ariane4_free_real_t t204 = t1 * parameters[MY3R] + t3 * t203;
-    const ariane4_free_real_t t205 = ARIANE4_FREE_C(-0.443) * dq[1];
-    const ariane4_free_real_t t206 = t204 * t205;
-    const ariane4_free_real_t t207 = ARIANE4_FREE_C(-0.443) * t33;
-    const ariane4_free_real_t t208 = t174 * t207;
+    const ariane4_free_real_t t205 = ARIANE4_FREE_C(-0.443) * dq[1]; /* link j3: velocity of its origin */
+    const ariane4_free_real_t t206 = t204 * t205; /* link j3: inertia, momentum beyond */
+    const ariane4_free_real_t t207 = ARIANE4_FREE_C(-0.443) * t33; /* link j3: velocity of its origin */
+    const ariane4_free_real_t t208 = t174 * t207; /* link j3: inertia, momentum beyond */
     const ariane4_free_real_t t209 = t202 + (t206 + t208);
     const ariane4_free_real_t t210 = parameters[XZ2R] * t33;
     const ariane4_free_real_t t211 = parameters[XY2] * dq[1];
@@ -360,83 +389,99 @@ int ariane4_free_inverse_dynamics_derivatives(
     const ariane4_free_real_t t216 = ARIANE4_FREE_C(0.5) * (parameters[XX2R] + parameters[ZZ2R]);
     const ariane4_free_real_t t217 = t215 - t188 - (parameters[YZ2] * t33 + dq[1] * t216);
     const ariane4_free_real_t t218 = t3 * t199 + t1 * t200;
+    /* link j3: column of the mass matrix */
     const ariane4_free_real_t t219 = t1 * t203 - t3 * parameters[MY3R];
     const ariane4_free_real_t t220 = t216 - parameters[XX2R];
+    /* link j3: inertia, momentum beyond */
     const ariane4_free_real_t t221 = parameters[XZ2R] * t38 + dq[1] * t220 + (t215 - t196
         + (ARIANE4_FREE_C(-0.443) * t218 - t219 * t205));
+    /* link j2: inertia, momentum beyond */
     const ariane4_free_real_t t222 = t2 * (t2 * (t214 - t212) + t0 * (t217 + t221));
-    const ariane4_free_real_t t223 = parameters[MY2] * dq[1] + t201;
+    const ariane4_free_real_t t223 = parameters[MY2] * dq[1] + t201; /* link j3: inertia, momentum beyond */
     const ariane4_free_real_t t224 = parameters[MX2R] * dq[1] - t218;
+    /* link j2: inertia, momentum beyond */
     const ariane4_free_real_t t225 = ARIANE4_FREE_C(0.116) * (t2 * t223 + t0 * t224)
         + t174 * (ARIANE4_FREE_C(-0.116) * dq[0]);
     const ariane4_free_real_t
         t226 = ARIANE4_FREE_C(250.0) * (parameters[IA1] * (t107 * (ARIANE4_FREE_C(-2.0) * dq[0]))
         - t101 * parameters[FV1]);
     input_by_dq[0] = t226 + t98 * (ARIANE4_FREE_C(2.0) * (t212 + t222 + t225));
-    const ariane4_free_real_t t227 = t8 * t168;
+    const ariane4_free_real_t t227 = t8 * t168; /* link j4: inertia, momentum beyond */
     const ariane4_free_real_t t228 = t6 * t171 - t8 * t170;
     const ariane4_free_real_t t229 = parameters[XY3R] * t5 - t17 * t195 - (t166 - t227
         - (ARIANE4_FREE_C(-0.1) * t228 + t192 * t175));
     const ariane4_free_real_t t230 = t5 * t187 + parameters[XY3R] * t17 + (t8 * t185 + t6 * t186);
     const ariane4_free_real_t t231 = parameters[MX3R] * t17 - parameters[MY3R] * t5 + t228;
+    /* link j3: inertia, momentum beyond */
     const ariane4_free_real_t t232 = t1 * t229 + t3 * t230 + (ARIANE4_FREE_C(0.443) * t231 - t219 * t207);
+    /* link j2: derivatives */
     const ariane4_free_real_t t233 = ARIANE4_FREE_C(2.0) * (parameters[XY2] * t38 + t33 * t220 + t232);
+    /* link j3: inertia, momentum beyond */
     const ariane4_free_real_t t234 = parameters[XY2] * t33 + t38 * t216 - (t3 * t229 - t1 * t230
         - t204 * t207);
-    const ariane4_free_real_t t235 = ARIANE4_FREE_C(2.0) * t234;
-    const ariane4_free_real_t t236 = parameters[MY2] + t204;
+    const ariane4_free_real_t t235 = ARIANE4_FREE_C(2.0) * t234; /* link j2: derivatives */
+    const ariane4_free_real_t t236 = parameters[MY2] + t204; /* link j3: inertia of it and all beyond */
     const ariane4_free_real_t t237 = parameters[MX2R] + t219;
     const ariane4_free_real_t t238 = ARIANE4_FREE_C(0.232) * dq[0];
+    /* link j2: derivatives */
     const ariane4_free_real_t t239 = t0 * t233 - t2 * t235 + (t2 * t236 + t0 * t237) * t238;
     input_by_dq[4] = t121 * t239;
-    const ariane4_free_real_t t240 = ARIANE4_FREE_C(2.0) * t229;
+    const ariane4_free_real_t t240 = ARIANE4_FREE_C(2.0) * t229; /* link j3: derivatives */
     const ariane4_free_real_t t241 = ARIANE4_FREE_C(-2.0) * t230;
-    const ariane4_free_real_t t242 = ARIANE4_FREE_C(0.886) * t33;
-    const ariane4_free_real_t t243 = t3 * t241 - t1 * t240 - t219 * t242;
+    const ariane4_free_real_t t242 = ARIANE4_FREE_C(0.886) * t33; /* link j4: derivatives */
+    const ariane4_free_real_t t243 = t3 * t241 - t1 * t240 - t219 * t242; /* link j3: derivatives */
     const ariane4_free_real_t t244 = t3 * t240 + t1 * t241 + t204 * t242;
     const ariane4_free_real_t t245 = t0 * t243 - t2 * t244 - (t2 * t204 + t0 * t219) * t238;
     input_by_dq[8] = t135 * t245;
-    const ariane4_free_real_t t246 = ARIANE4_FREE_C(2.0) * t189;
+    const ariane4_free_real_t t246 = ARIANE4_FREE_C(2.0) * t189; /* link j4: derivatives */
     const ariane4_free_real_t t247 = ARIANE4_FREE_C(2.0) * t190;
     const ariane4_free_real_t t248 = ARIANE4_FREE_C(-0.2) * t7;
     const ariane4_free_real_t t249 = t6 * t246 + t8 * t247 - t192 * t248;
     const ariane4_free_real_t t250 = ARIANE4_FREE_C(2.0) * t181;
     const ariane4_free_real_t t251 = t250 + t174 * (ARIANE4_FREE_C(0.2) * t17);
     const ariane4_free_real_t t252 = ARIANE4_FREE_C(0.886) * dq[1];
-    const ariane4_free_real_t t253 = t3 * t174;
+    const ariane4_free_real_t t253 = t3 * t174; /* link j4: column of the mass matrix */
+    /* link j4: derivatives */
     const ariane4_free_real_t t254 = t3 * t251 - t1 * t249 + (t192 * t252 - t253 * t242);
-    const ariane4_free_real_t t255 = t1 * t174;
-    const ariane4_free_real_t t256 = t3 * t249 + t1 * t251 - t255 * t242;
+    const ariane4_free_real_t t255 = t1 * t174; /* link j4: column of the mass matrix */
+    const ariane4_free_real_t t256 = t3 * t249 + t1 * t251 - t255 * t242; /* link j4: derivatives */
     const ariane4_free_real_t t257 = t0 * t254 - t2 * t256 + (t2 * t255 - t0 * t253) * t238;
     input_by_dq[12] = ARIANE4_FREE_C(0.2) * t257;
-    const ariane4_free_real_t t258 = ARIANE4_FREE_C(0.2) * t192;
+    const ariane4_free_real_t t258 = ARIANE4_FREE_C(0.2) * t192; /* link j4: inertia of it and all beyond */
     const ariane4_free_real_t t259 = parameters[ZZ4] + t258;
     const ariane4_free_real_t t260 = t6 * parameters[XX4R] - parameters[XY4] * (ARIANE4_FREE_C(2.0) * t8);
     const ariane4_free_real_t t261 = t6 * t260;
     const ariane4_free_real_t t262 = parameters[XX3R] + t261;
+    /* link j4: column of the mass matrix */
     const ariane4_free_real_t t263 = t6 * parameters[XZ4R] - t8 * parameters[YZ4R];
-    const ariane4_free_real_t t264 = parameters[XY3R] + t263;
+    const ariane4_free_real_t t264 = parameters[XY3R] + t263; /* link j4: inertia of it and all beyond */
+    /* link j3: inertia of it and all beyond */
     const ariane4_free_real_t t265 = t1 * (t259 - t262) + t264 * (ARIANE4_FREE_C(2.0) * t3);
     const ariane4_free_real_t t266 = t1 * t265;
     const ariane4_free_real_t t267 = ARIANE4_FREE_C(-0.886) * t219;
     const ariane4_free_real_t t268 = t262 + t266 - t267;
     const ariane4_free_real_t t269 = t266 - t259 - parameters[XX2R];
     const ariane4_free_real_t t270 = t3 * t265 - t264 + ARIANE4_FREE_C(0.443) * t204 - parameters[XY2];
+    /* link j2: inertia of it and all beyond */
     const ariane4_free_real_t t271 = t2 * (t2 * (t268 + t269) + t270 * (ARIANE4_FREE_C(-2.0) * t0));
     const ariane4_free_real_t t272 = t269 - t271 + ARIANE4_FREE_C(0.232) * (t0 * t236 - t2 * t237);
     input_by_ddq[0] = ARIANE4_FREE_C(-250.0) * (t101 * parameters[IA1]) + t98 * (t272 - parameters[ZZ1R]);
+    /* link j4: inertia of it and all beyond */
     const ariane4_free_real_t t273 = parameters[XY4] + t8 * t260 + ARIANE4_FREE_C(0.1) * t174
         - parameters[XZ3];
+    /* link j4: column of the mass matrix */
     const ariane4_free_real_t t274 = t8 * parameters[XZ4R] + t6 * parameters[YZ4R];
-    const ariane4_free_real_t t275 = parameters[YZ3] - t274;
-    const ariane4_free_real_t t276 = t1 * t273 + t3 * t275;
+    const ariane4_free_real_t t275 = parameters[YZ3] - t274; /* link j4: inertia of it and all beyond */
+    const ariane4_free_real_t t276 = t1 * t273 + t3 * t275; /* link j3: column of the mass matrix */
+    /* link j3: inertia of it and all beyond */
     const ariane4_free_real_t t277 = parameters[XZ2R] + (ARIANE4_FREE_C(0.443) * t174 - t276);
-    const ariane4_free_real_t t278 = t3 * t273 - t1 * t275;
-    const ariane4_free_real_t t279 = t278 - parameters[YZ2];
-    const ariane4_free_real_t t280 = t0 * t277 - t2 * t279;
+    const ariane4_free_real_t t278 = t3 * t273 - t1 * t275; /* link j3: column of the mass matrix */
+    const ariane4_free_real_t t279 = t278 - parameters[YZ2]; /* link j3: inertia of it and all beyond */
+    const ariane4_free_real_t t280 = t0 * t277 - t2 * t279; /* link j2: column of the mass matrix */
     input_by_ddq[4] = t121 * t280;
-    const ariane4_free_real_t t281 = t0 * t276 + t2 * t278;
+    const ariane4_free_real_t t281 = t0 * t276 + t2 * t278; /* link j3: column of the mass matrix */
     input_by_ddq[8] = t135 * t281;
+    /* link j4: column of the mass matrix */
     const ariane4_free_real_t t282 = ARIANE4_FREE_C(-0.1) * t192 - parameters[ZZ4];
     const ariane4_free_real_t t283 = t1 * t263 + t3 * t282;
     const ariane4_free_real_t t284 = t1 * t282 - t3 * t263 + ARIANE4_FREE_C(0.443) * t192;
@@ -444,7 +489,8 @@ int ariane4_free_inverse_dynamics_derivatives(
     input_by_ddq[12] = ARIANE4_FREE_C(-0.2) * t285;
     const ariane4_free_real_t t286 = ARIANE4_FREE_C(2.0) * t33;
     const ariane4_free_real_t t287 = ARIANE4_FREE_C(2.0) * t38;
-    const ariane4_free_real_t t288 = t89 + t34;
+    const ariane4_free_real_t t288 = t89 + t34; /* link j3: motion */
+    /* link j2: derivatives */
     const ariane4_free_real_t t289 = t286 * t212 - t287 * t217 + (t269 * t49 - t270 * t82 + t277 * t288);
     const ariane4_free_real_t t290 = t286 * t221 - t287 * t214 + (t270 * t49 + t268 * t82 - t279 * t288);
     const ariane4_free_real_t t291 = t0 * (t90 + (t289 + t174 * t32)) + t2 * (t85 + (t290 - t174 * t37));
@@ -456,8 +502,11 @@ int ariane4_free_inverse_dynamics_derivatives(
     const ariane4_free_real_t t296 = ARIANE4_FREE_C(-1.0) / t120;
     const ariane4_free_real_t t297 = t296 * (t118 * t121
         + ARIANE4_FREE_C(0.03137188092799786) * (t295 * (ARIANE4_FREE_C(0.5) * t294)));
+    /* link j4: inertia of it and all beyond */
     const ariane4_free_real_t t298 = parameters[ZZ3R] + (parameters[XX4R] - t261 + t258);
+    /* link j3: inertia of it and all beyond */
     const ariane4_free_real_t t299 = parameters[ZZ2R] + (t298 - t267);
+    /* link j2: derivatives */
     const ariane4_free_real_t t300 = t277 * t49 + t279 * t82 - t299 * t288 + (t33 * t233 + t38 * t235);
     const ariane4_free_real_t t301 = t122 * (t122 * (t295 * (ARIANE4_FREE_C(0.5) * t122)));
     const ariane4_free_real_t t302 = t128 * (ARIANE4_FREE_C(208.2597474788059) * (t122 * t301))
@@ -470,33 +519,44 @@ int ariane4_free_inverse_dynamics_derivatives(
     const ariane4_free_real_t t306 = ARIANE4_FREE_C(83.33333333333333) * t305 + t121 * (t236 * t37
         - t237 * t32 + t300);
     input_by_q[5] = t306 - t117 * t297;
+    /* link j3: column of the mass matrix */
     const ariane4_free_real_t t307 = t298 + ARIANE4_FREE_C(0.443) * t219;
+    /* link j3: derivatives */
     const ariane4_free_real_t t308 = t33 * t243 + t38 * t244 + (t276 * t49 - t278 * t82 + t307 * t288);
     input_by_q[9] = t135 * (t308 + (t219 * t32 - t204 * t37));
+    /* link j4: column of the mass matrix */
     const ariane4_free_real_t t309 = ARIANE4_FREE_C(-0.443) * t253 - t274;
+    /* link j4: derivatives */
     const ariane4_free_real_t t310 = t33 * t254 + t38 * t256 + (t283 * t49 + t284 * t82 - t309 * t288);
     input_by_q[13] = ARIANE4_FREE_C(0.2) * (t310 + (t255 * t37 + t253 * t32));
     const ariane4_free_real_t t311 = parameters[ZZ3R] - t187;
+    /* link j4: inertia, momentum beyond */
     const ariane4_free_real_t t312 = parameters[YZ3] * t7 - t17 * t311 + (t167 - t227);
     const ariane4_free_real_t t313 = parameters[XZ3] * t7 - t5 * t311 + (t8 * t189 - t6 * t190 - t174 * t193);
     const ariane4_free_real_t t314 = parameters[ZZ2R] - t216;
+    /* link j3: inertia, momentum beyond */
     const ariane4_free_real_t t315 = parameters[YZ2] * dq[1] - t33 * t314 + (t1 * t312 + t3 * t313);
+    /* link j2: derivatives */
     const ariane4_free_real_t t316 = t0 * (ARIANE4_FREE_C(2.0) * t315 + (t269 * t286 - t270 * t287));
+    /* link j3: inertia, momentum beyond */
     const ariane4_free_real_t t317 = t38 * t314 - parameters[XZ2R] * dq[1] + (t3 * t312 - t1 * t313
         + t174 * t205);
+    /* link j2: derivatives */
     const ariane4_free_real_t t318 = t2 * (ARIANE4_FREE_C(2.0) * t317 + (t270 * t286 + t268 * t287));
     const ariane4_free_real_t t319 = t316 + t318 + ARIANE4_FREE_C(0.116) * (t236 * t286 + t237 * t287);
     input_by_dq[1] = t98 * t319;
+    /* link j4: inertia, momentum beyond */
     const ariane4_free_real_t t320 = t182 - t178 + (t177 + (t169 - t161 + t176));
+    /* link j2: derivatives */
     const ariane4_free_real_t t321 = ARIANE4_FREE_C(2.0) * (t213 - t210 + (t320 + t208 - t209))
         + ARIANE4_FREE_C(2.0) * (t277 * t33 + t279 * t38);
     const ariane4_free_real_t t322 = ARIANE4_FREE_C(83.33333333333333) * (t124 * parameters[FV2]
         - parameters[IA2] * (t130 * (ARIANE4_FREE_C(2.0) * dq[1])));
     input_by_dq[5] = t322 + t121 * t321;
-    const ariane4_free_real_t t323 = ARIANE4_FREE_C(-2.0) * t320;
+    const ariane4_free_real_t t323 = ARIANE4_FREE_C(-2.0) * t320; /* link j3: derivatives */
     const ariane4_free_real_t t324 = t323 - t204 * t252 + ARIANE4_FREE_C(2.0) * (t276 * t33 - t278 * t38);
     input_by_dq[9] = t135 * t324;
-    const ariane4_free_real_t t325 = t8 * t246 - t6 * t247 + t174 * t248;
+    const ariane4_free_real_t t325 = t8 * t246 - t6 * t247 + t174 * t248; /* link j4: derivatives */
     const ariane4_free_real_t t326 = t325 + t255 * t252 + ARIANE4_FREE_C(2.0) * (t283 * t33 + t284 * t38);
     input_by_dq[13] = ARIANE4_FREE_C(0.2) * t326;
     input_by_ddq[1] = -(t98 * t280);
@@ -505,12 +565,13 @@ int ariane4_free_inverse_dynamics_derivatives(
     input_by_ddq[13] = ARIANE4_FREE_C(0.2) * t309;
     const ariane4_free_real_t t327 = ARIANE4_FREE_C(2.0) * t17;
     const ariane4_free_real_t t328 = ARIANE4_FREE_C(2.0) * t5;
-    const ariane4_free_real_t t329 = t65 + t43;
+    const ariane4_free_real_t t329 = t65 + t43; /* link j4: motion */
+    /* link j3: derivatives */
     const ariane4_free_real_t t330 = t327 * t180 + t328 * t188 + (t264 * t22 - t262 * t14 - t273 * t329);
     const ariane4_free_real_t t331 = t66 + (t330 - t174 * t42);
     const ariane4_free_real_t t332 = t328 * t183 - t327 * t196 + (t259 * t22 - t264 * t14 + t275 * t329);
-    const ariane4_free_real_t t333 = t174 * t72;
-    const ariane4_free_real_t t334 = t80 + (t332 - t333);
+    const ariane4_free_real_t t333 = t174 * t72; /* link j4: derivatives */
+    const ariane4_free_real_t t334 = t80 + (t332 - t333); /* link j3: derivatives */
     const ariane4_free_real_t t335 = parameters[MY3R] * t14 + t203 * t22 - (t327 * t200 + t328 * t199);
     const ariane4_free_real_t t336 = t2 * (t3 * t331 + t1 * t334 + ARIANE4_FREE_C(0.443) * t335);
     const ariane4_free_real_t t337 = t0 * (t1 * t331 - t3 * t334) + t336 + ARIANE4_FREE_C(0.116) * t335;
@@ -539,8 +600,10 @@ int ariane4_free_inverse_dynamics_derivatives(
         t353 = t352 * (ARIANE4_FREE_C(0.046787723832235825) * (t344 * (ARIANE4_FREE_C(0.5) * t351))
         - t132 * t135);
     input_by_q[10] = ARIANE4_FREE_C(-333.3333333333333) * t349 + t343 + t112 * t353;
+    /* link j4: derivatives */
     const ariane4_free_real_t t354 = t5 * t251 - t17 * t249 + (t263 * t14 + t282 * t22 + t274 * t329);
     input_by_q[14] = ARIANE4_FREE_C(0.2) * (t354 + t333);
+    /* link j3: derivatives */
     const ariane4_free_real_t t355 = ARIANE4_FREE_C(2.0) * t312 + (t264 * t328 - t262 * t327);
     const ariane4_free_real_t t356 = ARIANE4_FREE_C(2.0) * t313 - (t259 * t328 - t264 * t327);
     const ariane4_free_real_t t357 = parameters[MY3R] * t327 + t203 * t328;
@@ -563,9 +626,10 @@ int ariane4_free_inverse_dynamics_derivatives(
     input_by_ddq[6] = t121 * t307;
     input_by_ddq[10] = ARIANE4_FREE_C(-333.3333333333333) * (t138 * parameters[IA3]) - t135 * t298;
     input_by_ddq[14] = ARIANE4_FREE_C(-0.2) * t274;
-    const ariane4_free_real_t t365 = t28 + t29;
+    const ariane4_free_real_t t365 = t28 + t29; /* link j4: force and moment */
     const ariane4_free_real_t t366 = ARIANE4_FREE_C(2.0) * t10;
     const ariane4_free_real_t t367 = ARIANE4_FREE_C(2.0) * t9;
+    /* link j4: derivatives */
     const ariane4_free_real_t t368 = parameters[XY4] * t26 - parameters[XX4R] * t25 + parameters[XZ4R] * t365
         - (t366 * t161 + t367 * t167);
     const ariane4_free_real_t t369 = t78 + t368;

@@ -7,16 +7,16 @@
  * Arm ariane4_free, description 79391f27012d8ce4.
  * SPDX-License-Identifier: 0BSD
  *
- * Operations: 1564 (898 mul, 662 add, 4 neg), 12 div, 3 sqrt, 8 trig, 7 other.
+ * Operations: 1564 (898 mul, 662 add, 4 neg), 12 div, 3 sqrt, 8 trig, 7 other calls (sign, select and the like).
  *
- * @param[in]   q             [4]   [rad]                joint coordinates; norm at most 10000
- * @param[in]   dq            [4]   [rad/s]              joint velocities; norm at most 100000
- * @param[in]   ddq           [4]   [rad/s^2]            joint accelerations; norm at most 1e+08
- * @param[in]   parameters    [52]                       standard parameters; norm at most 1e+09
- * @param[out]  input         [4]   [A]                  inputs: motor currents, efforts where undriven
- * @param[out]  input_by_q    [16]  [(A) per (rad)]      d input / d q; 4 x 4, row-major
- * @param[out]  input_by_dq   [16]  [(A) per (rad/s)]    d input / d dq; 4 x 4, row-major
- * @param[out]  input_by_ddq  [16]  [(A) per (rad/s^2)]  d input / d ddq; 4 x 4, row-major
+ * @param[in]   q             [4]   [rad]              joint coordinates; norm at most 10000
+ * @param[in]   dq            [4]   [rad/s]            joint velocities; norm at most 100000
+ * @param[in]   ddq           [4]   [rad/s^2]          joint accelerations; norm at most 1e+08
+ * @param[in]   parameters    [52]                     standard parameters; norm at most 1e+09
+ * @param[out]  input         [4]   [A]                inputs: motor currents, efforts where undriven
+ * @param[out]  input_by_q    [16]  [A per rad]        d input / d q; 4 x 4, row-major
+ * @param[out]  input_by_dq   [16]  [A per (rad/s)]    d input / d dq; 4 x 4, row-major
+ * @param[out]  input_by_ddq  [16]  [A per (rad/s^2)]  d input / d ddq; 4 x 4, row-major
  *
  * Coordinates:
  *
@@ -82,11 +82,11 @@
  */
 #include "ariane4_free_private.h"
 
-#if ARIANE4_FREE_GENERATION != 0x261051E4UL
+#if ARIANE4_FREE_GENERATION != 0x6EBE5535UL
 #error "ariane4_free.h and ariane4_free_inverse_dynamics_derivatives_standard.c are of different generations: generate the arm again"
 #endif
 
-int ariane4_free_inverse_dynamics_derivatives_standard(
+ariane4_free_status_t ariane4_free_inverse_dynamics_derivatives_standard(
     const ariane4_free_real_t q[ARIANE4_FREE_N_JOINTS],
     const ariane4_free_real_t dq[ARIANE4_FREE_N_JOINTS],
     const ariane4_free_real_t ddq[ARIANE4_FREE_N_JOINTS],
@@ -99,7 +99,7 @@ int ariane4_free_inverse_dynamics_derivatives_standard(
     enum { XX1 = 0, XY1, XZ1, YY1, YZ1, ZZ1, MX1, MY1, MZ1, M1, XX2, XY2, XZ2, YY2, YZ2, ZZ2, MX2, MY2, MZ2,
         M2, XX3, XY3, XZ3, YY3, YZ3, ZZ3, MX3, MY3, MZ3, M3, XX4, XY4, XZ4, YY4, YZ4, ZZ4, MX4, MY4, MZ4, M4,
         FV1, FC1, IA1, FV2, FC2, IA2, FV3, FC3, IA3, FV4, FC4, IA4 };
-    int status = ARIANE4_FREE_STATUS_OK;
+    ariane4_free_status_t status = ARIANE4_FREE_STATUS_OK;
 
     if (!ariane4_free_within_joints(q, ARIANE4_FREE_C(1.0e8))
         || !ariane4_free_within_joints(dq, ARIANE4_FREE_C(1.0e10))
@@ -128,17 +128,17 @@ int ariane4_free_inverse_dynamics_derivatives_standard(
     ARIANE4_FREE_SINCOS(q[2], &t9, &t15);
     ariane4_free_real_t t34, t50;
     ARIANE4_FREE_SINCOS(q[3], &t34, &t50);
-    const ariane4_free_real_t t0 = dq[0] * dq[0];
-    const ariane4_free_real_t t1 = ARIANE4_FREE_C(0.116) * t0;
+    const ariane4_free_real_t t0 = dq[0] * dq[0]; /* link j1: motion */
+    const ariane4_free_real_t t1 = ARIANE4_FREE_C(0.116) * t0; /* link j2: motion */
     const ariane4_free_real_t t4 = t2 * t1 + ARIANE4_FREE_C(-9.81) * t3;
     const ariane4_free_real_t t5 = t2 * dq[0];
     const ariane4_free_real_t t6 = t5 * t5;
     const ariane4_free_real_t t7 = dq[1] * dq[1];
-    const ariane4_free_real_t t8 = t4 + ARIANE4_FREE_C(0.443) * (t6 + t7);
-    const ariane4_free_real_t t10 = ARIANE4_FREE_C(-9.81) * t2 - t3 * t1;
+    const ariane4_free_real_t t8 = t4 + ARIANE4_FREE_C(0.443) * (t6 + t7); /* link j3: motion */
+    const ariane4_free_real_t t10 = ARIANE4_FREE_C(-9.81) * t2 - t3 * t1; /* link j2: motion */
     const ariane4_free_real_t t11 = t3 * dq[0];
     const ariane4_free_real_t t12 = t11 * t5;
-    const ariane4_free_real_t t13 = ddq[1] + t12;
+    const ariane4_free_real_t t13 = ddq[1] + t12; /* link j3: motion */
     const ariane4_free_real_t t14 = t10 + ARIANE4_FREE_C(-0.443) * t13;
     const ariane4_free_real_t t16 = t15 * t14 - t9 * t8;
     const ariane4_free_real_t t17 = t3 * t15 + t2 * t9;
@@ -147,35 +147,36 @@ int ariane4_free_inverse_dynamics_derivatives_standard(
     const ariane4_free_real_t t20 = dq[0] * t19;
     const ariane4_free_real_t t21 = t18 * t20;
     const ariane4_free_real_t t22 = ddq[1] + ddq[2];
-    const ariane4_free_real_t t23 = t22 + t21;
-    const ariane4_free_real_t t24 = t18 * t18;
+    const ariane4_free_real_t t23 = t22 + t21; /* link j4: motion */
+    const ariane4_free_real_t t24 = t18 * t18; /* link j3: motion */
     const ariane4_free_real_t t25 = dq[1] + dq[2];
     const ariane4_free_real_t t26 = t25 * t25;
-    const ariane4_free_real_t t27 = t24 + t26;
+    const ariane4_free_real_t t27 = t24 + t26; /* link j4: motion */
     const ariane4_free_real_t t28 = t16 + (ARIANE4_FREE_C(0.1) * t23 + ARIANE4_FREE_C(0.436) * t27);
-    const ariane4_free_real_t t29 = t15 * t8 + t9 * t14;
+    const ariane4_free_real_t t29 = t15 * t8 + t9 * t14; /* link j3: motion */
     const ariane4_free_real_t t30 = t20 * t20;
-    const ariane4_free_real_t t31 = t30 + t26;
+    const ariane4_free_real_t t31 = t30 + t26; /* link j4: motion */
     const ariane4_free_real_t t32 = t21 - t22;
     const ariane4_free_real_t t33 = t29 + (ARIANE4_FREE_C(-0.1) * t31 + ARIANE4_FREE_C(-0.436) * t32);
-    const ariane4_free_real_t t35 = ddq[0] * t19;
+    const ariane4_free_real_t t35 = ddq[0] * t19; /* link j3: motion */
     const ariane4_free_real_t t36 = t18 * t25;
     const ariane4_free_real_t t37 = t35 - t36;
-    const ariane4_free_real_t t38 = t37 - t36;
-    const ariane4_free_real_t t39 = ddq[0] * t17;
+    const ariane4_free_real_t t38 = t37 - t36; /* link j4: motion */
+    const ariane4_free_real_t t39 = ddq[0] * t17; /* link j3: motion */
     const ariane4_free_real_t t40 = t20 * t25;
     const ariane4_free_real_t t41 = t39 + t40;
-    const ariane4_free_real_t t42 = t40 + t41;
-    const ariane4_free_real_t t43 = t2 * ddq[0];
+    const ariane4_free_real_t t42 = t40 + t41; /* link j4: motion */
+    const ariane4_free_real_t t43 = t2 * ddq[0]; /* link j2: motion */
     const ariane4_free_real_t t44 = dq[1] * t11;
     const ariane4_free_real_t t45 = t44 - t43;
-    const ariane4_free_real_t t46 = t44 + t45;
-    const ariane4_free_real_t t47 = ARIANE4_FREE_C(0.116) * ddq[0];
-    const ariane4_free_real_t t48 = t47 - ARIANE4_FREE_C(0.443) * t46;
+    const ariane4_free_real_t t46 = t44 + t45; /* link j3: motion */
+    const ariane4_free_real_t t47 = ARIANE4_FREE_C(0.116) * ddq[0]; /* link j2: motion */
+    const ariane4_free_real_t t48 = t47 - ARIANE4_FREE_C(0.443) * t46; /* link j3: motion */
+    /* link j4: motion */
     const ariane4_free_real_t t49 = ARIANE4_FREE_C(0.1) * t38 + ARIANE4_FREE_C(0.436) * t42 - t48;
     const ariane4_free_real_t t51 = t34 * t33 - t50 * t49;
-    const ariane4_free_real_t t52 = t51 * parameters[MZ4];
-    const ariane4_free_real_t t53 = t34 * t32 + t50 * t42;
+    const ariane4_free_real_t t52 = t51 * parameters[MZ4]; /* link j4: force and moment */
+    const ariane4_free_real_t t53 = t34 * t32 + t50 * t42; /* link j4: motion */
     const ariane4_free_real_t t54 = t34 * t18 + t50 * t25;
     const ariane4_free_real_t t55 = dq[3] + t20;
     const ariane4_free_real_t t56 = t54 * t55;
@@ -184,23 +185,27 @@ int ariane4_free_inverse_dynamics_derivatives_standard(
     const ariane4_free_real_t t59 = t34 * t25 - t50 * t18;
     const ariane4_free_real_t t60 = t59 * t55;
     const ariane4_free_real_t t61 = t58 + t60;
-    const ariane4_free_real_t t62 = t60 + t61;
+    const ariane4_free_real_t t62 = t60 + t61; /* link j4: columns */
+    /* link j4: force and moment */
     const ariane4_free_real_t t63 = t56 * (parameters[YY4] - parameters[ZZ4]) - t57 * parameters[XX4]
         + t62 * parameters[XY4];
-    const ariane4_free_real_t t64 = ddq[3] + t37;
+    const ariane4_free_real_t t64 = ddq[3] + t37; /* link j4: motion */
     const ariane4_free_real_t t65 = t59 * t54;
-    const ariane4_free_real_t t66 = t64 + t65;
-    const ariane4_free_real_t t67 = t54 * t54;
+    const ariane4_free_real_t t66 = t64 + t65; /* link j4: columns */
+    const ariane4_free_real_t t67 = t54 * t54; /* link j4: motion */
     const ariane4_free_real_t t68 = t55 * t55;
+    /* link j4: force and moment */
     const ariane4_free_real_t t69 = (t67 - t68) * parameters[YZ4] + (t63 + t66 * parameters[XZ4])
         - (t28 * parameters[MY4] + t52);
-    const ariane4_free_real_t t70 = t50 * t33 + t34 * t49;
-    const ariane4_free_real_t t71 = t70 * parameters[MZ4];
-    const ariane4_free_real_t t72 = t56 + t57;
+    const ariane4_free_real_t t70 = t50 * t33 + t34 * t49; /* link j4: motion */
+    const ariane4_free_real_t t71 = t70 * parameters[MZ4]; /* link j4: force and moment */
+    const ariane4_free_real_t t72 = t56 + t57; /* link j4: columns */
+    /* link j4: force and moment */
     const ariane4_free_real_t t73 = t61 * parameters[YY4] - t60 * (parameters[XX4] - parameters[ZZ4])
         - t72 * parameters[XY4];
-    const ariane4_free_real_t t74 = t64 - t65;
-    const ariane4_free_real_t t75 = t59 * t59;
+    const ariane4_free_real_t t74 = t64 - t65; /* link j4: columns */
+    const ariane4_free_real_t t75 = t59 * t59; /* link j4: motion */
+    /* link j4: force and moment */
     const ariane4_free_real_t t76 = (t68 - t75) * parameters[XZ4] + (t73 + t74 * parameters[YZ4])
         + (t28 * parameters[MX4] - t71);
     const ariane4_free_real_t t77 = t70 * parameters[M4];
@@ -209,47 +214,60 @@ int ariane4_free_inverse_dynamics_derivatives_standard(
     const ariane4_free_real_t t80 = t51 * parameters[M4];
     const ariane4_free_real_t t81 = t53 * parameters[MZ4];
     const ariane4_free_real_t t82 = t80 + (t66 * parameters[MX4] - (t75 + t68) * parameters[MY4] - t81);
-    const ariane4_free_real_t t83 = t50 * t82 - t34 * t79;
+    const ariane4_free_real_t t83 = t50 * t82 - t34 * t79; /* link j4: what it passes on */
+    /* link j3: force and moment */
     const ariane4_free_real_t t84 = t41 * parameters[XX3] - t40 * (parameters[YY3] - parameters[ZZ3])
         + t38 * parameters[XY3];
     const ariane4_free_real_t t85 = t48 * parameters[MY3] - t16 * parameters[MZ3] - ((t30
         - t26) * parameters[YZ3] + (t84 + t23 * parameters[XZ3]));
+    /* link j4: what it passes on */
     const ariane4_free_real_t t86 = t85 - (t50 * t69 - t34 * t76 + ARIANE4_FREE_C(-0.436) * t83);
+    /* link j4: inertia of it and all beyond */
     const ariane4_free_real_t t87 = parameters[XX4] - parameters[YY4];
+    /* link j4: force and moment */
     const ariane4_free_real_t t88 = t64 * parameters[ZZ4] - t65 * t87 + t58 * parameters[YZ4]
         + t53 * parameters[XZ4];
     const ariane4_free_real_t t89 = (t75 - t67) * parameters[XY4] + t88 + (t51 * parameters[MX4]
         + t70 * parameters[MY4]);
+    /* link j3: force and moment */
     const ariane4_free_real_t t90 = t36 * (parameters[XX3] - parameters[ZZ3]) + t37 * parameters[YY3]
         + t42 * parameters[XY3];
     const ariane4_free_real_t t91 = t48 * parameters[MX3] - t29 * parameters[MZ3] + ((t26
         - t24) * parameters[XZ3] + (t90 - t32 * parameters[YZ3]));
-    const ariane4_free_real_t t92 = t91 + (t89 + ARIANE4_FREE_C(-0.1) * t83);
-    const ariane4_free_real_t t93 = dq[1] * t5;
+    const ariane4_free_real_t t92 = t91 + (t89 + ARIANE4_FREE_C(-0.1) * t83); /* link j4: what it passes on */
+    const ariane4_free_real_t t93 = dq[1] * t5; /* link j2: motion */
     const ariane4_free_real_t t94 = t3 * ddq[0];
     const ariane4_free_real_t t95 = t94 + t93;
+    /* link j2: force and moment */
     const ariane4_free_real_t t96 = t93 * (parameters[YY2] - parameters[ZZ2]) - t95 * parameters[XX2]
         + t46 * parameters[XY2];
     const ariane4_free_real_t t97 = (t7 - t6) * parameters[YZ2] + (t96 - t13 * parameters[XZ2])
         + (t47 * parameters[MY2] - t10 * parameters[MZ2]);
-    const ariane4_free_real_t t98 = t97 + (t15 * t86 + t9 * t92);
-    const ariane4_free_real_t t99 = t24 + t30;
+    const ariane4_free_real_t t98 = t97 + (t15 * t86 + t9 * t92); /* link j3: what it passes on */
+    const ariane4_free_real_t t99 = t24 + t30; /* link j4: motion */
+    /* link j3: force and moment */
     const ariane4_free_real_t t100 = t48 * parameters[M3] + (t99 * parameters[MZ3] + (t38 * parameters[MX3]
         - t42 * parameters[MY3]));
-    const ariane4_free_real_t t101 = t100 + t83;
-    const ariane4_free_real_t t102 = t93 + t95;
+    const ariane4_free_real_t t101 = t100 + t83; /* link j4: what it passes on */
+    const ariane4_free_real_t t102 = t93 + t95; /* link j3: motion */
+    /* link j2: force and moment */
     const ariane4_free_real_t t103 = t44 * (parameters[XX2] - parameters[ZZ2]) - t45 * parameters[YY2]
         + t102 * parameters[XY2];
-    const ariane4_free_real_t t104 = t11 * t11;
+    const ariane4_free_real_t t104 = t11 * t11; /* link j2: motion */
+    /* link j2: force and moment */
     const ariane4_free_real_t t105 = (t7 - t104) * parameters[XZ2] + (t103 + (ddq[1]
         - t12) * parameters[YZ2]);
+    /* link j3: what it passes on */
     const ariane4_free_real_t t106 = t105 + (t47 * parameters[MX2] - t4 * parameters[MZ2]) + (t15 * t92
         - t9 * t86 + ARIANE4_FREE_C(0.443) * t101);
-    const ariane4_free_real_t t107 = t104 + t6;
+    const ariane4_free_real_t t107 = t104 + t6; /* link j3: motion */
+    /* link j2: force and moment */
     const ariane4_free_real_t t108 = t47 * parameters[M2] + (t107 * parameters[MZ2] - (t46 * parameters[MX2]
         + t102 * parameters[MY2]));
+    /* link j2: what it passes on */
     const ariane4_free_real_t t109 = t2 * t106 - t3 * t98 + ARIANE4_FREE_C(0.116) * (t108 + t101);
     const ariane4_free_real_t t110 = ddq[0] * parameters[ZZ1] + t109;
+    /* joint j1: drive */
     const ariane4_free_real_t t113 = ARIANE4_FREE_C(-0.28217402066925895) * t111
         + ARIANE4_FREE_C(-0.9593632378089879) * t112;
     const ariane4_free_real_t t114 = ARIANE4_FREE_SQRT(ARIANE4_FREE_C(-0.037468) * t113
@@ -261,36 +279,44 @@ int ariane4_free_inverse_dynamics_derivatives_standard(
     const ariane4_free_real_t t118 = ARIANE4_FREE_C(3885.523436256565) * t117;
     const ariane4_free_real_t t119 = t115 * t118;
     const ariane4_free_real_t t120 = t119 * dq[0];
-    const ariane4_free_real_t t121 = ariane4_free_sign(t120);
-    const ariane4_free_real_t t122 = ARIANE4_FREE_C(-72.7913960548305) * (t117 * t117);
+    const ariane4_free_real_t t121 = ariane4_free_sign(t120); /* joint j1: coulomb_friction */
+    const ariane4_free_real_t t122 = ARIANE4_FREE_C(-72.7913960548305) * (t117 * t117); /* joint j1: drive */
     const ariane4_free_real_t t123 = t115 * t115;
     const ariane4_free_real_t t124 = ARIANE4_FREE_C(3885.523436256565) * t113 + t122 * t123;
     const ariane4_free_real_t t125 = t117 * t124;
     const ariane4_free_real_t t126 = t120 * parameters[FV1] + t121 * parameters[FC1] + (t119 * ddq[0]
         + t125 * t0) * parameters[IA1];
     input[0] = ARIANE4_FREE_C(-250.0) * t126 - t116 * t110;
-    const ariane4_free_real_t t127 = t50 * t79 + t34 * t82;
-    const ariane4_free_real_t t128 = t75 + t67;
+    const ariane4_free_real_t t127 = t50 * t79 + t34 * t82; /* link j4: what it passes on */
+    const ariane4_free_real_t t128 = t75 + t67; /* link j4: columns */
+    /* link j4: force and moment */
     const ariane4_free_real_t t129 = t28 * parameters[M4] + (t128 * parameters[MZ4] + (t62 * parameters[MX4]
         + t72 * parameters[MY4]));
+    /* link j4: what it passes on */
     const ariane4_free_real_t t130 = t34 * t69 + t50 * t76 + (ARIANE4_FREE_C(-0.1) * t129
         - ARIANE4_FREE_C(0.436) * t127);
+    /* link j3: force and moment */
     const ariane4_free_real_t t131 = t22 * parameters[ZZ3] - t21 * (parameters[XX3] - parameters[YY3])
         + t35 * parameters[YZ3];
     const ariane4_free_real_t t132 = t29 * parameters[MY3] - t16 * parameters[MX3] + ((t24
         - t30) * parameters[XY3] + (t131 + t39 * parameters[XZ3]));
-    const ariane4_free_real_t t133 = t132 - t130;
+    const ariane4_free_real_t t133 = t132 - t130; /* link j4: what it passes on */
+    /* link j3: force and moment */
     const ariane4_free_real_t t134 = t32 * parameters[MY3] - t31 * parameters[MX3] + t35 * parameters[MZ3]
         - t29 * parameters[M3];
-    const ariane4_free_real_t t135 = t134 - t127;
+    const ariane4_free_real_t t135 = t134 - t127; /* link j4: what it passes on */
+    /* link j3: force and moment */
     const ariane4_free_real_t t136 = t16 * parameters[M3] + (t27 * parameters[MY3] - t23 * parameters[MX3]
         + t39 * parameters[MZ3]);
-    const ariane4_free_real_t t137 = t136 + t129;
+    const ariane4_free_real_t t137 = t136 + t129; /* link j4: what it passes on */
+    /* link j2: force and moment */
     const ariane4_free_real_t t138 = t12 * (parameters[XX2] - parameters[YY2]) - ddq[1] * parameters[ZZ2]
         - t43 * parameters[YZ2];
     const ariane4_free_real_t t139 = t4 * parameters[MY2] - t10 * parameters[MX2] + ((t104
         - t6) * parameters[XY2] - (t138 - t94 * parameters[XZ2]));
+    /* link j3: what it passes on */
     const ariane4_free_real_t t140 = t139 + (t133 - ARIANE4_FREE_C(0.443) * (t15 * t137 - t9 * t135));
+    /* joint j2: drive */
     const ariane4_free_real_t t141 = ARIANE4_FREE_C(-0.8305958991958126) * t2
         + ARIANE4_FREE_C(0.5568756164881881) * t3;
     const ariane4_free_real_t t142 = ARIANE4_FREE_SQRT(ARIANE4_FREE_C(0.078402) * t141
@@ -302,7 +328,8 @@ int ariane4_free_inverse_dynamics_derivatives_standard(
     const ariane4_free_real_t t146 = ARIANE4_FREE_C(-2656.3065671641784) * t145;
     const ariane4_free_real_t t147 = t143 * t146;
     const ariane4_free_real_t t148 = t147 * dq[1];
-    const ariane4_free_real_t t149 = ariane4_free_sign(t148);
+    const ariane4_free_real_t t149 = ariane4_free_sign(t148); /* joint j2: coulomb_friction */
+    /* joint j2: drive */
     const ariane4_free_real_t t150 = ARIANE4_FREE_C(-104.12987373940295) * (t145 * t145);
     const ariane4_free_real_t t151 = t143 * t143;
     const ariane4_free_real_t t152 = ARIANE4_FREE_C(-2656.3065671641784) * t141 + t150 * t151;
@@ -310,6 +337,7 @@ int ariane4_free_inverse_dynamics_derivatives_standard(
     const ariane4_free_real_t t154 = t148 * parameters[FV2] + t149 * parameters[FC2] + (t147 * ddq[1]
         - t153 * t7) * parameters[IA2];
     input[1] = ARIANE4_FREE_C(83.33333333333333) * t154 + t144 * t140;
+    /* joint j3: drive */
     const ariane4_free_real_t t155 = ARIANE4_FREE_C(-0.06366143813161289) * t15
         + ARIANE4_FREE_C(0.9979715533496006) * t9;
     const ariane4_free_real_t t156 = ARIANE4_FREE_SQRT(ARIANE4_FREE_C(-0.052812) * t155
@@ -321,7 +349,8 @@ int ariane4_free_inverse_dynamics_derivatives_standard(
     const ariane4_free_real_t t160 = ARIANE4_FREE_C(7124.375926654358) * t159;
     const ariane4_free_real_t t161 = t157 * t160;
     const ariane4_free_real_t t162 = t161 * dq[2];
-    const ariane4_free_real_t t163 = ariane4_free_sign(t162);
+    const ariane4_free_real_t t163 = ariane4_free_sign(t162); /* joint j3: coulomb_friction */
+    /* joint j3: drive */
     const ariane4_free_real_t t164 = ARIANE4_FREE_C(-188.12627071923498) * (t159 * t159);
     const ariane4_free_real_t t165 = t157 * t157;
     const ariane4_free_real_t t166 = ARIANE4_FREE_C(7124.375926654358) * t155 + t164 * t165;
@@ -330,7 +359,7 @@ int ariane4_free_inverse_dynamics_derivatives_standard(
     const ariane4_free_real_t t169 = t162 * parameters[FV3] + t163 * parameters[FC3] + (t161 * ddq[2]
         + t167 * t168) * parameters[IA3];
     input[2] = ARIANE4_FREE_C(-333.3333333333333) * t169 - t158 * t133;
-    const ariane4_free_real_t t170 = ariane4_free_sign(dq[3]);
+    const ariane4_free_real_t t170 = ariane4_free_sign(dq[3]); /* joint j4: coulomb_friction */
     const ariane4_free_real_t t171 = ARIANE4_FREE_C(1.0e2) * dq[3] * parameters[FV4] + t170 * parameters[FC4]
         + ARIANE4_FREE_C(1.0e2) * ddq[3] * parameters[IA4];
     input[3] = ARIANE4_FREE_C(20.0) * t171 + ARIANE4_FREE_C(0.2) * t89;
@@ -352,22 +381,26 @@ int ariane4_free_inverse_dynamics_derivatives_standard(
     input_by_q[0] = ARIANE4_FREE_C(-250.0) * t181 + t110 * t176;
     const ariane4_free_real_t t182 = t54 * parameters[MZ4] + t55 * parameters[MY4];
     const ariane4_free_real_t t183 = t55 * parameters[MX4] + t59 * parameters[MZ4];
-    const ariane4_free_real_t t184 = t50 * t182 + t34 * t183;
+    const ariane4_free_real_t t184 = t50 * t182 + t34 * t183; /* link j4: inertia, momentum beyond */
     const ariane4_free_real_t t185 = ARIANE4_FREE_C(0.1) * t184;
     const ariane4_free_real_t t186 = t59 * parameters[MY4] - t54 * parameters[MX4];
     const ariane4_free_real_t t187 = ARIANE4_FREE_C(-0.436) * t186;
+    /* link j4: column of the mass matrix */
     const ariane4_free_real_t t188 = t34 * parameters[MY4] - t50 * parameters[MX4];
+    /* link j4: inertia of it and all beyond */
     const ariane4_free_real_t t189 = ARIANE4_FREE_C(0.1) * parameters[M4];
     const ariane4_free_real_t t190 = t188 + t189;
-    const ariane4_free_real_t t191 = ARIANE4_FREE_C(0.436) * t25;
-    const ariane4_free_real_t t192 = t190 * t191;
+    const ariane4_free_real_t t191 = ARIANE4_FREE_C(0.436) * t25; /* link j4: velocity of its origin */
+    const ariane4_free_real_t t192 = t190 * t191; /* link j4: inertia, momentum beyond */
+    /* link j4: inertia of it and all beyond */
     const ariane4_free_real_t t193 = ARIANE4_FREE_C(0.436) * parameters[M4];
     const ariane4_free_real_t t194 = parameters[MZ4] + t193;
-    const ariane4_free_real_t t195 = ARIANE4_FREE_C(0.1) * t25;
-    const ariane4_free_real_t t196 = t194 * t195;
+    const ariane4_free_real_t t195 = ARIANE4_FREE_C(0.1) * t25; /* link j4: velocity of its origin */
+    const ariane4_free_real_t t196 = t194 * t195; /* link j4: inertia, momentum beyond */
     const ariane4_free_real_t t197 = ARIANE4_FREE_C(0.436) * t18 + ARIANE4_FREE_C(0.1) * t20;
+    /* link j4: column of the mass matrix */
     const ariane4_free_real_t t198 = t50 * parameters[MY4] + t34 * parameters[MX4];
-    const ariane4_free_real_t t199 = t198 * t197;
+    const ariane4_free_real_t t199 = t198 * t197; /* link j4: inertia, momentum beyond */
     const ariane4_free_real_t t200 = t185 + t187 + (t192 - t196 - t199);
     const ariane4_free_real_t t201 = t54 * parameters[XZ4];
     const ariane4_free_real_t t202 = t55 * parameters[XY4];
@@ -401,22 +434,24 @@ int ariane4_free_inverse_dynamics_derivatives_standard(
     const ariane4_free_real_t t228 = ARIANE4_FREE_C(-0.1) * t186 - t190 * t195 - (t50 * t226 + t34 * t227);
     const ariane4_free_real_t t229 = parameters[XX3] - t223;
     const ariane4_free_real_t t230 = t25 * t229 - t18 * parameters[XZ3] + t228;
+    /* link j3: inertia, momentum beyond */
     const ariane4_free_real_t t231 = t15 * (t215 + t218) + t9 * (t225 + t230);
     const ariane4_free_real_t t232 = t15 * t231;
-    const ariane4_free_real_t t233 = parameters[MX3] - t190;
+    const ariane4_free_real_t t233 = parameters[MX3] - t190; /* link j4: inertia of it and all beyond */
     const ariane4_free_real_t t234 = parameters[MY3] + t194;
-    const ariane4_free_real_t t235 = t15 * t234 + t9 * t233;
-    const ariane4_free_real_t t236 = ARIANE4_FREE_C(0.443) * dq[1];
-    const ariane4_free_real_t t237 = t235 * t236;
+    const ariane4_free_real_t t235 = t15 * t234 + t9 * t233; /* link j3: column of the mass matrix */
+    const ariane4_free_real_t t236 = ARIANE4_FREE_C(0.443) * dq[1]; /* link j3: velocity of its origin */
+    const ariane4_free_real_t t237 = t235 * t236; /* link j3: inertia, momentum beyond */
+    /* link j4: inertia, momentum beyond */
     const ariane4_free_real_t t238 = t20 * parameters[MZ3] - t25 * parameters[MY3] - (t184
         + parameters[M4] * t191);
     const ariane4_free_real_t t239 = t18 * parameters[MZ3] - t25 * parameters[MX3] + (t186
         + parameters[M4] * t195);
-    const ariane4_free_real_t t240 = t15 * t238 + t9 * t239;
+    const ariane4_free_real_t t240 = t15 * t238 + t9 * t239; /* link j3: inertia, momentum beyond */
     const ariane4_free_real_t t241 = ARIANE4_FREE_C(-0.443) * t240;
-    const ariane4_free_real_t t242 = parameters[MZ3] - t198;
-    const ariane4_free_real_t t243 = ARIANE4_FREE_C(0.443) * t5;
-    const ariane4_free_real_t t244 = t242 * t243;
+    const ariane4_free_real_t t242 = parameters[MZ3] - t198; /* link j4: inertia of it and all beyond */
+    const ariane4_free_real_t t243 = ARIANE4_FREE_C(0.443) * t5; /* link j3: velocity of its origin */
+    const ariane4_free_real_t t244 = t242 * t243; /* link j3: inertia, momentum beyond */
     const ariane4_free_real_t t245 = t241 + (t244 - t237);
     const ariane4_free_real_t t246 = dq[1] * parameters[XY2];
     const ariane4_free_real_t t247 = t11 * parameters[YZ2];
@@ -429,24 +464,29 @@ int ariane4_free_inverse_dynamics_derivatives_standard(
     const ariane4_free_real_t t253 = parameters[YY2] - t252;
     const ariane4_free_real_t t254 = dq[1] * t253 - t5 * parameters[YZ2] + (t251 - t225);
     const ariane4_free_real_t t255 = t9 * t238 - t15 * t239;
-    const ariane4_free_real_t t256 = t9 * t234 - t15 * t233;
+    const ariane4_free_real_t t256 = t9 * t234 - t15 * t233; /* link j3: column of the mass matrix */
+    /* link j4: inertia of it and all beyond */
     const ariane4_free_real_t t257 = parameters[M3] + parameters[M4];
-    const ariane4_free_real_t t258 = ARIANE4_FREE_C(0.443) * t257;
+    const ariane4_free_real_t t258 = ARIANE4_FREE_C(0.443) * t257; /* link j3: inertia of it and all beyond */
     const ariane4_free_real_t t259 = t258 - t256;
     const ariane4_free_real_t t260 = t252 - parameters[XX2];
+    /* link j3: inertia, momentum beyond */
     const ariane4_free_real_t t261 = t11 * parameters[XZ2] + dq[1] * t260 + (t251 - t230
         + (ARIANE4_FREE_C(0.443) * t255 + t259 * t236));
+    /* link j2: inertia, momentum beyond */
     const ariane4_free_real_t t262 = t2 * (t2 * (t248 - t250) + t3 * (t254 + t261));
+    /* link j3: inertia, momentum beyond */
     const ariane4_free_real_t t263 = t5 * parameters[MZ2] - dq[1] * parameters[MY2] + t240;
     const ariane4_free_real_t t264 = dq[1] * parameters[MX2] - t11 * parameters[MZ2] + (t255 + t257 * t236);
-    const ariane4_free_real_t t265 = parameters[MZ2] + t242;
+    const ariane4_free_real_t t265 = parameters[MZ2] + t242; /* link j3: inertia of it and all beyond */
+    /* link j2: inertia, momentum beyond */
     const ariane4_free_real_t t266 = ARIANE4_FREE_C(0.116) * (t3 * t264 - t2 * t263)
         + t265 * (ARIANE4_FREE_C(0.116) * dq[0]);
     const ariane4_free_real_t
         t267 = ARIANE4_FREE_C(250.0) * (parameters[IA1] * (t125 * (ARIANE4_FREE_C(-2.0) * dq[0]))
         - t119 * parameters[FV1]);
     input_by_dq[0] = t267 + t116 * (ARIANE4_FREE_C(2.0) * (t250 + t262 + t266));
-    const ariane4_free_real_t t268 = t34 * t211;
+    const ariane4_free_real_t t268 = t34 * t211; /* link j4: inertia, momentum beyond */
     const ariane4_free_real_t t269 = t50 * t183 - t34 * t182;
     const ariane4_free_real_t t270 = t18 * parameters[XY3] - t20 * t229 - (t208 - t268
         - (ARIANE4_FREE_C(-0.1) * t269 + t190 * t197));
@@ -454,24 +494,28 @@ int ariane4_free_inverse_dynamics_derivatives_standard(
     const ariane4_free_real_t t272 = t18 * t224 + t20 * parameters[XY3] + t271;
     const ariane4_free_real_t t273 = t20 * parameters[MX3] - t18 * parameters[MY3] + (t269
         - parameters[M4] * t197);
+    /* link j3: inertia, momentum beyond */
     const ariane4_free_real_t t274 = t15 * t270 + t9 * t272 + (ARIANE4_FREE_C(0.443) * t273 + t259 * t243);
+    /* link j2: derivatives */
     const ariane4_free_real_t t275 = ARIANE4_FREE_C(2.0) * (t11 * parameters[XY2] + t5 * t260 + t274);
+    /* link j3: inertia, momentum beyond */
     const ariane4_free_real_t t276 = t5 * parameters[XY2] - t11 * t253 - (t9 * t270 - t15 * t272
         + t235 * t243);
-    const ariane4_free_real_t t277 = ARIANE4_FREE_C(2.0) * t276;
-    const ariane4_free_real_t t278 = parameters[MY2] + t235;
+    const ariane4_free_real_t t277 = ARIANE4_FREE_C(2.0) * t276; /* link j2: derivatives */
+    const ariane4_free_real_t t278 = parameters[MY2] + t235; /* link j3: inertia of it and all beyond */
     const ariane4_free_real_t t279 = parameters[MX2] + t259;
     const ariane4_free_real_t t280 = ARIANE4_FREE_C(0.232) * dq[0];
+    /* link j2: derivatives */
     const ariane4_free_real_t t281 = t3 * t275 - t2 * t277 + (t2 * t278 + t3 * t279) * t280;
     input_by_dq[4] = t144 * t281;
-    const ariane4_free_real_t t282 = ARIANE4_FREE_C(2.0) * t270;
+    const ariane4_free_real_t t282 = ARIANE4_FREE_C(2.0) * t270; /* link j3: derivatives */
     const ariane4_free_real_t t283 = ARIANE4_FREE_C(-2.0) * t272;
-    const ariane4_free_real_t t284 = ARIANE4_FREE_C(0.886) * t5;
-    const ariane4_free_real_t t285 = t9 * t283 - t15 * t282 + t256 * t284;
+    const ariane4_free_real_t t284 = ARIANE4_FREE_C(0.886) * t5; /* link j4: derivatives */
+    const ariane4_free_real_t t285 = t9 * t283 - t15 * t282 + t256 * t284; /* link j3: derivatives */
     const ariane4_free_real_t t286 = t9 * t282 + t15 * t283 + t235 * t284;
     const ariane4_free_real_t t287 = t3 * t285 - t2 * t286 + (t3 * t256 - t2 * t235) * t280;
     input_by_dq[8] = t158 * t287;
-    const ariane4_free_real_t t288 = ARIANE4_FREE_C(2.0) * t226;
+    const ariane4_free_real_t t288 = ARIANE4_FREE_C(2.0) * t226; /* link j4: derivatives */
     const ariane4_free_real_t t289 = ARIANE4_FREE_C(-2.0) * t227;
     const ariane4_free_real_t t290 = ARIANE4_FREE_C(-0.2) * t25;
     const ariane4_free_real_t t291 = t34 * t289 - t50 * t288 + t188 * t290;
@@ -479,46 +523,56 @@ int ariane4_free_inverse_dynamics_derivatives_standard(
     const ariane4_free_real_t t293 = t292 + (t198 * (ARIANE4_FREE_C(2.0) * t197)
         + t188 * (ARIANE4_FREE_C(-0.872) * t25));
     const ariane4_free_real_t t294 = ARIANE4_FREE_C(0.886) * dq[1];
-    const ariane4_free_real_t t295 = t9 * t198;
+    const ariane4_free_real_t t295 = t9 * t198; /* link j4: column of the mass matrix */
+    /* link j4: derivatives */
     const ariane4_free_real_t t296 = t15 * t291 + t9 * t293 + (t188 * t294 - t295 * t284);
-    const ariane4_free_real_t t297 = t15 * t198;
-    const ariane4_free_real_t t298 = t9 * t291 - t15 * t293 + t297 * t284;
+    const ariane4_free_real_t t297 = t15 * t198; /* link j4: column of the mass matrix */
+    const ariane4_free_real_t t298 = t9 * t291 - t15 * t293 + t297 * t284; /* link j4: derivatives */
     const ariane4_free_real_t t299 = t3 * t296 + t2 * t298 + (t2 * t297 - t3 * t295) * t280;
     input_by_dq[12] = ARIANE4_FREE_C(0.2) * t299;
+    /* link j4: inertia of it and all beyond */
     const ariane4_free_real_t t300 = t50 * t87 - parameters[XY4] * (ARIANE4_FREE_C(2.0) * t34);
     const ariane4_free_real_t t301 = t50 * t300;
     const ariane4_free_real_t t302 = ARIANE4_FREE_C(0.436) * (t193 + ARIANE4_FREE_C(2.0) * parameters[MZ4]);
     const ariane4_free_real_t t303 = parameters[XX3] + (parameters[YY4] + t301 + t302);
     const ariane4_free_real_t t304 = ARIANE4_FREE_C(0.1) * (t189 + ARIANE4_FREE_C(2.0) * t188);
     const ariane4_free_real_t t305 = parameters[YY3] + (parameters[ZZ4] + t304);
+    /* link j4: column of the mass matrix */
     const ariane4_free_real_t t306 = t50 * parameters[XZ4] - t34 * parameters[YZ4];
+    /* link j4: inertia of it and all beyond */
     const ariane4_free_real_t t307 = parameters[XY3] + (t306 + (ARIANE4_FREE_C(0.1) * parameters[MZ4]
         + ARIANE4_FREE_C(0.436) * t190));
+    /* link j3: inertia of it and all beyond */
     const ariane4_free_real_t t308 = t15 * (t305 - t303) + t307 * (ARIANE4_FREE_C(2.0) * t9);
     const ariane4_free_real_t t309 = t15 * t308;
     const ariane4_free_real_t t310 = t309 - t305 - parameters[XX2];
     const ariane4_free_real_t t311 = ARIANE4_FREE_C(0.443) * (t258 - ARIANE4_FREE_C(2.0) * t256);
     const ariane4_free_real_t t312 = parameters[YY2] + (t303 + t309 + t311);
     const ariane4_free_real_t t313 = t9 * t308 - t307 + ARIANE4_FREE_C(0.443) * t235 - parameters[XY2];
+    /* link j2: inertia of it and all beyond */
     const ariane4_free_real_t t314 = t2 * (t2 * (t310 + t312) + t313 * (ARIANE4_FREE_C(-2.0) * t3));
     const ariane4_free_real_t t315 = ARIANE4_FREE_C(-0.116) * (parameters[M2] + t257)
         + ARIANE4_FREE_C(2.0) * (t3 * t278 - t2 * t279);
     const ariane4_free_real_t t316 = ARIANE4_FREE_C(-250.0) * (t119 * parameters[IA1]) + t116 * (t310 - t314
         + ARIANE4_FREE_C(0.116) * t315 - parameters[ZZ1]);
     input_by_ddq[0] = t316;
+    /* link j4: inertia of it and all beyond */
     const ariane4_free_real_t t317 = parameters[XY4] + t34 * t300 + ARIANE4_FREE_C(0.1) * t198
         - parameters[XZ3];
+    /* link j4: column of the mass matrix */
     const ariane4_free_real_t t318 = t34 * parameters[XZ4] + t50 * parameters[YZ4]
         - ARIANE4_FREE_C(0.436) * t198;
-    const ariane4_free_real_t t319 = parameters[YZ3] - t318;
-    const ariane4_free_real_t t320 = t15 * t317 + t9 * t319;
+    const ariane4_free_real_t t319 = parameters[YZ3] - t318; /* link j4: inertia of it and all beyond */
+    const ariane4_free_real_t t320 = t15 * t317 + t9 * t319; /* link j3: column of the mass matrix */
+    /* link j3: inertia of it and all beyond */
     const ariane4_free_real_t t321 = parameters[XZ2] + (ARIANE4_FREE_C(-0.443) * t242 - t320);
-    const ariane4_free_real_t t322 = t9 * t317 - t15 * t319;
-    const ariane4_free_real_t t323 = t322 - parameters[YZ2];
-    const ariane4_free_real_t t324 = t3 * t321 - t2 * t323;
+    const ariane4_free_real_t t322 = t9 * t317 - t15 * t319; /* link j3: column of the mass matrix */
+    const ariane4_free_real_t t323 = t322 - parameters[YZ2]; /* link j3: inertia of it and all beyond */
+    const ariane4_free_real_t t324 = t3 * t321 - t2 * t323; /* link j2: column of the mass matrix */
     input_by_ddq[4] = t144 * t324;
-    const ariane4_free_real_t t325 = t3 * t320 + t2 * t322;
+    const ariane4_free_real_t t325 = t3 * t320 + t2 * t322; /* link j3: column of the mass matrix */
     input_by_ddq[8] = t158 * t325;
+    /* link j4: column of the mass matrix */
     const ariane4_free_real_t t326 = ARIANE4_FREE_C(-0.436) * t188 - t306;
     const ariane4_free_real_t t327 = ARIANE4_FREE_C(-0.1) * t188 - parameters[ZZ4];
     const ariane4_free_real_t t328 = t9 * t327 - t15 * t326;
@@ -527,6 +581,7 @@ int ariane4_free_inverse_dynamics_derivatives_standard(
     input_by_ddq[12] = ARIANE4_FREE_C(-0.2) * t330;
     const ariane4_free_real_t t331 = ARIANE4_FREE_C(2.0) * t5;
     const ariane4_free_real_t t332 = ARIANE4_FREE_C(2.0) * t11;
+    /* link j2: derivatives */
     const ariane4_free_real_t t333 = t331 * t250 - t332 * t254 + (t43 * t310 - t94 * t313 + t107 * t321);
     const ariane4_free_real_t t334 = t331 * t261 - t332 * t248 + (t43 * t313 + t94 * t312 - t107 * t323);
     const ariane4_free_real_t t335 = t3 * (t106 + (t333 + t4 * t265)) + t2 * (t98 + (t334 + t10 * t265));
@@ -538,8 +593,11 @@ int ariane4_free_inverse_dynamics_derivatives_standard(
     const ariane4_free_real_t t340 = ARIANE4_FREE_C(-1.0) / t143;
     const ariane4_free_real_t t341 = t340 * (t141 * t144
         + ARIANE4_FREE_C(0.03137188092799786) * (t339 * (ARIANE4_FREE_C(0.5) * t338)));
+    /* link j4: inertia of it and all beyond */
     const ariane4_free_real_t t342 = parameters[ZZ3] + (parameters[XX4] - t301 + (t304 + t302));
+    /* link j3: inertia of it and all beyond */
     const ariane4_free_real_t t343 = parameters[ZZ2] + (t342 + t311);
+    /* link j2: derivatives */
     const ariane4_free_real_t t344 = t43 * t321 + t94 * t323 - t107 * t343 + (t5 * t275 + t11 * t277);
     const ariane4_free_real_t t345 = t145 * (t145 * (t339 * (ARIANE4_FREE_C(0.5) * t145)));
     const ariane4_free_real_t t346 = t151 * (ARIANE4_FREE_C(208.2597474788059) * (t145 * t345))
@@ -552,34 +610,45 @@ int ariane4_free_inverse_dynamics_derivatives_standard(
     const ariane4_free_real_t t350 = ARIANE4_FREE_C(83.33333333333333) * t349 + t144 * (t4 * t279 + t10 * t278
         + t344);
     input_by_q[5] = t350 - t140 * t341;
+    /* link j3: column of the mass matrix */
     const ariane4_free_real_t t351 = t342 + ARIANE4_FREE_C(-0.443) * t256;
+    /* link j3: derivatives */
     const ariane4_free_real_t t352 = t5 * t285 + t11 * t286 + (t43 * t320 - t94 * t322 + t107 * t351);
     input_by_q[9] = t158 * (t352 + (t4 * t256 - t10 * t235));
+    /* link j4: column of the mass matrix */
     const ariane4_free_real_t t353 = ARIANE4_FREE_C(-0.443) * t295 - t318;
+    /* link j4: derivatives */
     const ariane4_free_real_t t354 = t5 * t296 - t11 * t298 + (t43 * t328 + t94 * t329 - t107 * t353);
     input_by_q[13] = ARIANE4_FREE_C(0.2) * (t354 + (t10 * t297 - t4 * t295));
     const ariane4_free_real_t t355 = parameters[ZZ3] - t223;
+    /* link j4: inertia, momentum beyond */
     const ariane4_free_real_t t356 = t25 * parameters[YZ3] - t20 * t355 + (t210 - t268 + t198 * t191);
     const ariane4_free_real_t t357 = t25 * parameters[XZ3] - t18 * t355 - (t50 * t227 - t34 * t226
         + t198 * t195);
     const ariane4_free_real_t t358 = parameters[ZZ2] - t252;
+    /* link j3: inertia, momentum beyond */
     const ariane4_free_real_t t359 = dq[1] * parameters[YZ2] - t5 * t358 + (t15 * t356 + t9 * t357);
+    /* link j2: derivatives */
     const ariane4_free_real_t t360 = t3 * (ARIANE4_FREE_C(2.0) * t359 + (t310 * t331 - t313 * t332));
+    /* link j3: inertia, momentum beyond */
     const ariane4_free_real_t t361 = t11 * t358 - dq[1] * parameters[XZ2] + (t9 * t356 - t15 * t357
         + t242 * t236);
+    /* link j2: derivatives */
     const ariane4_free_real_t t362 = t2 * (ARIANE4_FREE_C(2.0) * t361 + (t313 * t331 + t312 * t332));
     const ariane4_free_real_t t363 = t360 + t362 + ARIANE4_FREE_C(0.116) * (t278 * t331 + t279 * t332);
     input_by_dq[1] = t116 * t363;
+    /* link j4: inertia, momentum beyond */
     const ariane4_free_real_t t364 = t217 - t213 + (t200 + (t212 - t203 + t199));
+    /* link j2: derivatives */
     const ariane4_free_real_t t365 = ARIANE4_FREE_C(2.0) * (t247 - t249 + (t364 + t244 - t245))
         + ARIANE4_FREE_C(2.0) * (t5 * t321 + t11 * t323);
     const ariane4_free_real_t t366 = ARIANE4_FREE_C(83.33333333333333) * (t147 * parameters[FV2]
         - parameters[IA2] * (t153 * (ARIANE4_FREE_C(2.0) * dq[1])));
     input_by_dq[5] = t366 + t144 * t365;
-    const ariane4_free_real_t t367 = ARIANE4_FREE_C(-2.0) * t364;
+    const ariane4_free_real_t t367 = ARIANE4_FREE_C(-2.0) * t364; /* link j3: derivatives */
     const ariane4_free_real_t t368 = t367 - t235 * t294 + ARIANE4_FREE_C(2.0) * (t5 * t320 - t11 * t322);
     input_by_dq[9] = t158 * t368;
-    const ariane4_free_real_t t369 = t34 * t288 + t50 * t289 + t198 * t290;
+    const ariane4_free_real_t t369 = t34 * t288 + t50 * t289 + t198 * t290; /* link j4: derivatives */
     const ariane4_free_real_t t370 = t369 + t297 * t294 + ARIANE4_FREE_C(2.0) * (t5 * t328 + t11 * t329);
     input_by_dq[13] = ARIANE4_FREE_C(0.2) * t370;
     input_by_ddq[1] = -(t116 * t324);
@@ -588,6 +657,7 @@ int ariane4_free_inverse_dynamics_derivatives_standard(
     input_by_ddq[13] = ARIANE4_FREE_C(0.2) * t353;
     const ariane4_free_real_t t371 = ARIANE4_FREE_C(-2.0) * t18;
     const ariane4_free_real_t t372 = ARIANE4_FREE_C(2.0) * t20;
+    /* link j3: derivatives */
     const ariane4_free_real_t t373 = t39 * t305 - t35 * t307 + t99 * t319 - (t372 * t230 + t371 * t218);
     const ariane4_free_real_t t374 = t86 + (t373 + t16 * t242);
     const ariane4_free_real_t t375 = t372 * t215 - t371 * t225 + (t39 * t307 - t35 * t303 - t99 * t317);
@@ -620,8 +690,10 @@ int ariane4_free_inverse_dynamics_derivatives_standard(
     const ariane4_free_real_t t396 = parameters[FV3] * (dq[2] * t395) + parameters[IA3] * (ddq[2] * t395
         + t394);
     input_by_q[10] = ARIANE4_FREE_C(-333.3333333333333) * t396 + t391 + t133 * t390;
+    /* link j4: derivatives */
     const ariane4_free_real_t t397 = t20 * t291 + t18 * t293 + (t39 * t327 - t35 * t326 + t99 * t318);
     input_by_q[14] = ARIANE4_FREE_C(0.2) * (t397 + t16 * t198);
+    /* link j3: derivatives */
     const ariane4_free_real_t t398 = ARIANE4_FREE_C(2.0) * t356 - (t303 * t372 + t307 * t371);
     const ariane4_free_real_t t399 = ARIANE4_FREE_C(2.0) * t357 + (t307 * t372 + t305 * t371);
     const ariane4_free_real_t t400 = t234 * t372 - t233 * t371;
@@ -646,6 +718,7 @@ int ariane4_free_inverse_dynamics_derivatives_standard(
     input_by_ddq[14] = ARIANE4_FREE_C(-0.2) * t318;
     const ariane4_free_real_t t408 = ARIANE4_FREE_C(-2.0) * t54;
     const ariane4_free_real_t t409 = ARIANE4_FREE_C(-2.0) * t59;
+    /* link j4: derivatives */
     const ariane4_free_real_t t410 = t408 * t203 + t409 * t210 + (t53 * parameters[XY4]
         - t58 * parameters[XX4] + t128 * parameters[XZ4]);
     const ariane4_free_real_t t411 = t76 + (t71 + t410);

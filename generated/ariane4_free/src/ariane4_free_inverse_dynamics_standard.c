@@ -6,7 +6,7 @@
  * Arm ariane4_free, description 79391f27012d8ce4.
  * SPDX-License-Identifier: 0BSD
  *
- * Operations: 448 (251 mul, 197 add, 0 neg), 6 div, 3 sqrt, 8 trig, 4 other.
+ * Operations: 448 (251 mul, 197 add, 0 neg), 6 div, 3 sqrt, 8 trig, 4 other calls (sign, select and the like).
  *
  * @param[in]   q           [4]   [rad]      joint coordinates; norm at most 10000
  * @param[in]   dq          [4]   [rad/s]    joint velocities; norm at most 100000
@@ -78,11 +78,11 @@
  */
 #include "ariane4_free_private.h"
 
-#if ARIANE4_FREE_GENERATION != 0x261051E4UL
+#if ARIANE4_FREE_GENERATION != 0x6EBE5535UL
 #error "ariane4_free.h and ariane4_free_inverse_dynamics_standard.c are of different generations: generate the arm again"
 #endif
 
-int ariane4_free_inverse_dynamics_standard(
+ariane4_free_status_t ariane4_free_inverse_dynamics_standard(
     const ariane4_free_real_t q[ARIANE4_FREE_N_JOINTS],
     const ariane4_free_real_t dq[ARIANE4_FREE_N_JOINTS],
     const ariane4_free_real_t ddq[ARIANE4_FREE_N_JOINTS],
@@ -92,7 +92,7 @@ int ariane4_free_inverse_dynamics_standard(
     enum { XX1 = 0, XY1, XZ1, YY1, YZ1, ZZ1, MX1, MY1, MZ1, M1, XX2, XY2, XZ2, YY2, YZ2, ZZ2, MX2, MY2, MZ2,
         M2, XX3, XY3, XZ3, YY3, YZ3, ZZ3, MX3, MY3, MZ3, M3, XX4, XY4, XZ4, YY4, YZ4, ZZ4, MX4, MY4, MZ4, M4,
         FV1, FC1, IA1, FV2, FC2, IA2, FV3, FC3, IA3, FV4, FC4, IA4 };
-    int status = ARIANE4_FREE_STATUS_OK;
+    ariane4_free_status_t status = ARIANE4_FREE_STATUS_OK;
 
     if (!ariane4_free_within_joints(q, ARIANE4_FREE_C(1.0e8))
         || !ariane4_free_within_joints(dq, ARIANE4_FREE_C(1.0e10))
@@ -118,17 +118,17 @@ int ariane4_free_inverse_dynamics_standard(
     ARIANE4_FREE_SINCOS(q[2], &t9, &t15);
     ariane4_free_real_t t34, t50;
     ARIANE4_FREE_SINCOS(q[3], &t34, &t50);
-    const ariane4_free_real_t t0 = dq[0] * dq[0];
-    const ariane4_free_real_t t1 = ARIANE4_FREE_C(0.116) * t0;
+    const ariane4_free_real_t t0 = dq[0] * dq[0]; /* link j1: motion */
+    const ariane4_free_real_t t1 = ARIANE4_FREE_C(0.116) * t0; /* link j2: motion */
     const ariane4_free_real_t t4 = t2 * t1 + ARIANE4_FREE_C(-9.81) * t3;
     const ariane4_free_real_t t5 = t2 * dq[0];
     const ariane4_free_real_t t6 = t5 * t5;
     const ariane4_free_real_t t7 = dq[1] * dq[1];
-    const ariane4_free_real_t t8 = t4 + ARIANE4_FREE_C(0.443) * (t6 + t7);
-    const ariane4_free_real_t t10 = t3 * t1 + ARIANE4_FREE_C(9.81) * t2;
+    const ariane4_free_real_t t8 = t4 + ARIANE4_FREE_C(0.443) * (t6 + t7); /* link j3: motion */
+    const ariane4_free_real_t t10 = t3 * t1 + ARIANE4_FREE_C(9.81) * t2; /* link j2: motion */
     const ariane4_free_real_t t11 = t3 * dq[0];
     const ariane4_free_real_t t12 = t11 * t5;
-    const ariane4_free_real_t t13 = ddq[1] + t12;
+    const ariane4_free_real_t t13 = ddq[1] + t12; /* link j3: motion */
     const ariane4_free_real_t t14 = t10 + ARIANE4_FREE_C(0.443) * t13;
     const ariane4_free_real_t t16 = t9 * t8 + t15 * t14;
     const ariane4_free_real_t t17 = t3 * t15 + t2 * t9;
@@ -137,31 +137,32 @@ int ariane4_free_inverse_dynamics_standard(
     const ariane4_free_real_t t20 = dq[0] * t19;
     const ariane4_free_real_t t21 = t18 * t20;
     const ariane4_free_real_t t22 = ddq[1] + ddq[2];
-    const ariane4_free_real_t t23 = t22 + t21;
-    const ariane4_free_real_t t24 = t18 * t18;
+    const ariane4_free_real_t t23 = t22 + t21; /* link j4: motion */
+    const ariane4_free_real_t t24 = t18 * t18; /* link j3: motion */
     const ariane4_free_real_t t25 = dq[1] + dq[2];
     const ariane4_free_real_t t26 = t25 * t25;
-    const ariane4_free_real_t t27 = t24 + t26;
+    const ariane4_free_real_t t27 = t24 + t26; /* link j4: motion */
     const ariane4_free_real_t t28 = t16 - (ARIANE4_FREE_C(0.1) * t23 + ARIANE4_FREE_C(0.436) * t27);
-    const ariane4_free_real_t t29 = t15 * t8 - t9 * t14;
+    const ariane4_free_real_t t29 = t15 * t8 - t9 * t14; /* link j3: motion */
     const ariane4_free_real_t t30 = t20 * t20;
-    const ariane4_free_real_t t31 = t30 + t26;
+    const ariane4_free_real_t t31 = t30 + t26; /* link j4: motion */
     const ariane4_free_real_t t32 = t22 - t21;
     const ariane4_free_real_t t33 = t29 + (ARIANE4_FREE_C(-0.1) * t31 + ARIANE4_FREE_C(0.436) * t32);
-    const ariane4_free_real_t t35 = ddq[0] * t19;
+    const ariane4_free_real_t t35 = ddq[0] * t19; /* link j3: motion */
     const ariane4_free_real_t t36 = t18 * t25;
     const ariane4_free_real_t t37 = t36 - t35;
-    const ariane4_free_real_t t38 = t36 + t37;
-    const ariane4_free_real_t t39 = ddq[0] * t17;
+    const ariane4_free_real_t t38 = t36 + t37; /* link j4: motion */
+    const ariane4_free_real_t t39 = ddq[0] * t17; /* link j3: motion */
     const ariane4_free_real_t t40 = t20 * t25;
     const ariane4_free_real_t t41 = t39 + t40;
-    const ariane4_free_real_t t42 = t40 + t41;
-    const ariane4_free_real_t t43 = t2 * ddq[0];
+    const ariane4_free_real_t t42 = t40 + t41; /* link j4: motion */
+    const ariane4_free_real_t t43 = t2 * ddq[0]; /* link j2: motion */
     const ariane4_free_real_t t44 = dq[1] * t11;
     const ariane4_free_real_t t45 = t44 - t43;
-    const ariane4_free_real_t t46 = t44 + t45;
-    const ariane4_free_real_t t47 = ARIANE4_FREE_C(-0.116) * ddq[0];
-    const ariane4_free_real_t t48 = t47 + ARIANE4_FREE_C(0.443) * t46;
+    const ariane4_free_real_t t46 = t44 + t45; /* link j3: motion */
+    const ariane4_free_real_t t47 = ARIANE4_FREE_C(-0.116) * ddq[0]; /* link j2: motion */
+    const ariane4_free_real_t t48 = t47 + ARIANE4_FREE_C(0.443) * t46; /* link j3: motion */
+    /* link j4: motion */
     const ariane4_free_real_t t49 = ARIANE4_FREE_C(0.1) * t38 + ARIANE4_FREE_C(-0.436) * t42 - t48;
     const ariane4_free_real_t t51 = t34 * t33 + t50 * t49;
     const ariane4_free_real_t t52 = t50 * t42 - t34 * t32;
@@ -173,22 +174,26 @@ int ariane4_free_inverse_dynamics_standard(
     const ariane4_free_real_t t58 = t50 * t18 - t34 * t25;
     const ariane4_free_real_t t59 = t58 * t54;
     const ariane4_free_real_t t60 = t57 + t59;
-    const ariane4_free_real_t t61 = t59 + t60;
+    const ariane4_free_real_t t61 = t59 + t60; /* link j4: columns */
+    /* link j4: force and moment */
     const ariane4_free_real_t t62 = t55 * (parameters[ZZ4] - parameters[YY4]) - t56 * parameters[XX4]
         + t61 * parameters[XY4];
-    const ariane4_free_real_t t63 = t37 - ddq[3];
+    const ariane4_free_real_t t63 = t37 - ddq[3]; /* link j4: motion */
     const ariane4_free_real_t t64 = t58 * t53;
-    const ariane4_free_real_t t65 = t63 + t64;
-    const ariane4_free_real_t t66 = t53 * t53;
+    const ariane4_free_real_t t65 = t63 + t64; /* link j4: columns */
+    const ariane4_free_real_t t66 = t53 * t53; /* link j4: motion */
     const ariane4_free_real_t t67 = t54 * t54;
+    /* link j4: force and moment */
     const ariane4_free_real_t t68 = (t67 - t66) * parameters[YZ4] + (t62 + t65 * parameters[XZ4])
         + (t51 * parameters[MZ4] - t28 * parameters[MY4]);
-    const ariane4_free_real_t t69 = t50 * t33 - t34 * t49;
-    const ariane4_free_real_t t70 = t56 - t55;
+    const ariane4_free_real_t t69 = t50 * t33 - t34 * t49; /* link j4: motion */
+    const ariane4_free_real_t t70 = t56 - t55; /* link j4: columns */
+    /* link j4: force and moment */
     const ariane4_free_real_t t71 = t59 * (parameters[XX4] - parameters[ZZ4]) - t60 * parameters[YY4]
         + t70 * parameters[XY4];
-    const ariane4_free_real_t t72 = t64 - t63;
-    const ariane4_free_real_t t73 = t58 * t58;
+    const ariane4_free_real_t t72 = t64 - t63; /* link j4: columns */
+    const ariane4_free_real_t t73 = t58 * t58; /* link j4: motion */
+    /* link j4: force and moment */
     const ariane4_free_real_t t74 = (t73 - t67) * parameters[XZ4] - (t71 + t72 * parameters[YZ4])
         + (t69 * parameters[MZ4] + t28 * parameters[MX4]);
     const ariane4_free_real_t t75 = (t66 + t67) * parameters[MX4] + t72 * parameters[MY4]
@@ -197,43 +202,56 @@ int ariane4_free_inverse_dynamics_standard(
     const ariane4_free_real_t t77 = (t73 + t67) * parameters[MY4] + t65 * parameters[MX4]
         + t52 * parameters[MZ4];
     const ariane4_free_real_t t78 = t77 - t51 * parameters[M4];
-    const ariane4_free_real_t t79 = t34 * t76 + t50 * t78;
+    const ariane4_free_real_t t79 = t34 * t76 + t50 * t78; /* link j4: what it passes on */
+    /* link j3: force and moment */
     const ariane4_free_real_t t80 = t38 * parameters[XY3] - (t40 * (parameters[ZZ3] - parameters[YY3])
         + t41 * parameters[XX3]);
     const ariane4_free_real_t t81 = t16 * parameters[MZ3] - t48 * parameters[MY3] + ((t26
         - t30) * parameters[YZ3] + (t80 - t23 * parameters[XZ3]));
+    /* link j4: what it passes on */
     const ariane4_free_real_t t82 = t81 + (t50 * t68 - t34 * t74 + ARIANE4_FREE_C(-0.436) * t79);
+    /* link j4: force and moment */
     const ariane4_free_real_t t83 = t64 * (parameters[XX4] - parameters[YY4]) - t63 * parameters[ZZ4]
         - t57 * parameters[YZ4];
     const ariane4_free_real_t t84 = (t73 - t66) * parameters[XY4] + (t83 + t52 * parameters[XZ4])
         + (t51 * parameters[MX4] + t69 * parameters[MY4]);
+    /* link j3: force and moment */
     const ariane4_free_real_t t85 = t36 * (parameters[XX3] - parameters[ZZ3]) - t37 * parameters[YY3]
         + t42 * parameters[XY3];
     const ariane4_free_real_t t86 = t29 * parameters[MZ3] + t48 * parameters[MX3] + ((t24
         - t26) * parameters[XZ3] - (t85 + t32 * parameters[YZ3]));
-    const ariane4_free_real_t t87 = t86 - (t84 + ARIANE4_FREE_C(0.1) * t79);
-    const ariane4_free_real_t t88 = dq[1] * t5;
+    const ariane4_free_real_t t87 = t86 - (t84 + ARIANE4_FREE_C(0.1) * t79); /* link j4: what it passes on */
+    const ariane4_free_real_t t88 = dq[1] * t5; /* link j2: motion */
     const ariane4_free_real_t t89 = t3 * ddq[0];
     const ariane4_free_real_t t90 = t89 + t88;
+    /* link j2: force and moment */
     const ariane4_free_real_t t91 = t88 * (parameters[YY2] - parameters[ZZ2]) - t90 * parameters[XX2]
         + t46 * parameters[XY2];
     const ariane4_free_real_t t92 = (t7 - t6) * parameters[YZ2] + (t91 - t13 * parameters[XZ2])
         + (t10 * parameters[MZ2] - t47 * parameters[MY2]);
+    /* link j3: force and moment */
     const ariane4_free_real_t t93 = t38 * parameters[MX3] + t42 * parameters[MY3] - (t24
         + t30) * parameters[MZ3];
-    const ariane4_free_real_t t94 = t48 * parameters[M3] + t93 + t79;
-    const ariane4_free_real_t t95 = t88 + t90;
+    const ariane4_free_real_t t94 = t48 * parameters[M3] + t93 + t79; /* link j4: what it passes on */
+    const ariane4_free_real_t t95 = t88 + t90; /* link j3: motion */
+    /* link j2: force and moment */
     const ariane4_free_real_t t96 = t44 * (parameters[ZZ2] - parameters[XX2]) + t45 * parameters[YY2]
         - t95 * parameters[XY2];
-    const ariane4_free_real_t t97 = t11 * t11;
+    const ariane4_free_real_t t97 = t11 * t11; /* link j2: motion */
+    /* link j2: force and moment */
     const ariane4_free_real_t t98 = (t97 - t7) * parameters[XZ2] + (t96 + (t12 - ddq[1]) * parameters[YZ2]);
+    /* link j3: what it passes on */
     const ariane4_free_real_t t99 = t98 + (t4 * parameters[MZ2] + t47 * parameters[MX2]) + (t9 * t82
         + t15 * t87 + ARIANE4_FREE_C(0.443) * t94);
+    /* link j2: what it passes on */
     const ariane4_free_real_t t100 = t3 * (t92 + (t15 * t82 - t9 * t87)) + t2 * t99;
+    /* link j2: force and moment */
     const ariane4_free_real_t t101 = t46 * parameters[MX2] + t95 * parameters[MY2] - (t97
         + t6) * parameters[MZ2];
+    /* link j2: what it passes on */
     const ariane4_free_real_t t102 = t100 + ARIANE4_FREE_C(0.116) * (t47 * parameters[M2] + t101 + t94)
         - ddq[0] * parameters[ZZ1];
+    /* joint j1: drive */
     const ariane4_free_real_t t105 = ARIANE4_FREE_C(0.28217402066925895) * t103
         + ARIANE4_FREE_C(0.9593632378089879) * t104;
     const ariane4_free_real_t t106 = ARIANE4_FREE_SQRT(ARIANE4_FREE_C(0.037468) * t105
@@ -244,32 +262,40 @@ int ariane4_free_inverse_dynamics_standard(
     const ariane4_free_real_t t109 = ARIANE4_FREE_C(-1.0) / t106;
     const ariane4_free_real_t t110 = t107 * (ARIANE4_FREE_C(3885.523436256565) * t109);
     const ariane4_free_real_t t111 = t110 * dq[0];
-    const ariane4_free_real_t t112 = ariane4_free_sign(t111);
+    const ariane4_free_real_t t112 = ariane4_free_sign(t111); /* joint j1: coulomb_friction */
+    /* joint j1: drive */
     const ariane4_free_real_t t113 = ARIANE4_FREE_C(-3885.523436256565) * t105
         + ARIANE4_FREE_C(-72.7913960548305) * (t109 * t109) * (t107 * t107);
     const ariane4_free_real_t t114 = t111 * parameters[FV1] + t112 * parameters[FC1] + (t110 * ddq[0]
         + t109 * t113 * t0) * parameters[IA1];
     out[0] = ARIANE4_FREE_C(-250.0) * t114 + t108 * t102;
-    const ariane4_free_real_t t115 = t34 * t78 - t50 * t76;
+    const ariane4_free_real_t t115 = t34 * t78 - t50 * t76; /* link j4: what it passes on */
+    /* link j4: force and moment */
     const ariane4_free_real_t t116 = t61 * parameters[MX4] + t70 * parameters[MY4] - (t73
         + t66) * parameters[MZ4];
     const ariane4_free_real_t t117 = t28 * parameters[M4] + t116;
+    /* link j4: what it passes on */
     const ariane4_free_real_t t118 = t34 * t68 + t50 * t74 + (ARIANE4_FREE_C(-0.1) * t117
         + ARIANE4_FREE_C(-0.436) * t115);
+    /* link j3: force and moment */
     const ariane4_free_real_t t119 = t22 * parameters[ZZ3] - t21 * (parameters[XX3] - parameters[YY3])
         + t35 * parameters[YZ3];
     const ariane4_free_real_t t120 = t16 * parameters[MX3] + t29 * parameters[MY3] + ((t24
         - t30) * parameters[XY3] + (t119 + t39 * parameters[XZ3]));
-    const ariane4_free_real_t t121 = t120 + t118;
+    const ariane4_free_real_t t121 = t120 + t118; /* link j4: what it passes on */
+    /* link j3: force and moment */
     const ariane4_free_real_t t122 = t35 * parameters[MZ3] - (t31 * parameters[MX3] + t32 * parameters[MY3])
         - t29 * parameters[M3];
     const ariane4_free_real_t t123 = t16 * parameters[M3] + (t23 * parameters[MX3] - t27 * parameters[MY3]
         - t39 * parameters[MZ3]);
+    /* link j3: what it passes on */
     const ariane4_free_real_t t124 = ARIANE4_FREE_C(0.443) * (t9 * (t122 + t115) + t15 * (t123 + t117));
+    /* link j2: force and moment */
     const ariane4_free_real_t t125 = t12 * (parameters[YY2] - parameters[XX2]) + ddq[1] * parameters[ZZ2]
         + t43 * parameters[YZ2];
     const ariane4_free_real_t t126 = t10 * parameters[MX2] + t4 * parameters[MY2] + ((t97
         - t6) * parameters[XY2] + (t125 + t89 * parameters[XZ2]));
+    /* joint j2: drive */
     const ariane4_free_real_t t127 = ARIANE4_FREE_C(0.8305958991958126) * t2
         - ARIANE4_FREE_C(0.5568756164881881) * t3;
     const ariane4_free_real_t t128 = ARIANE4_FREE_SQRT(ARIANE4_FREE_C(-0.078402) * t127
@@ -280,12 +306,14 @@ int ariane4_free_inverse_dynamics_standard(
     const ariane4_free_real_t t131 = ARIANE4_FREE_C(1.0) / t128;
     const ariane4_free_real_t t132 = t129 * (ARIANE4_FREE_C(2656.3065671641784) * t131);
     const ariane4_free_real_t t133 = t132 * dq[1];
-    const ariane4_free_real_t t134 = ariane4_free_sign(t133);
+    const ariane4_free_real_t t134 = ariane4_free_sign(t133); /* joint j2: coulomb_friction */
+    /* joint j2: drive */
     const ariane4_free_real_t t135 = ARIANE4_FREE_C(2656.3065671641784) * t127
         + ARIANE4_FREE_C(-104.12987373940295) * (t131 * t131) * (t129 * t129);
     const ariane4_free_real_t t136 = t133 * parameters[FV2] + t134 * parameters[FC2] + (t132 * ddq[1]
         + t131 * t135 * t7) * parameters[IA2];
     out[1] = ARIANE4_FREE_C(83.33333333333333) * t136 + t130 * (t126 + (t121 + t124));
+    /* joint j3: drive */
     const ariane4_free_real_t t137 = ARIANE4_FREE_C(0.06366143813161289) * t15
         - ARIANE4_FREE_C(0.9979715533496006) * t9;
     const ariane4_free_real_t t138 = ARIANE4_FREE_SQRT(ARIANE4_FREE_C(0.052812) * t137
@@ -296,14 +324,16 @@ int ariane4_free_inverse_dynamics_standard(
     const ariane4_free_real_t t141 = ARIANE4_FREE_C(-1.0) / t138;
     const ariane4_free_real_t t142 = t139 * (ARIANE4_FREE_C(7124.375926654358) * t141);
     const ariane4_free_real_t t143 = t142 * dq[2];
-    const ariane4_free_real_t t144 = ariane4_free_sign(t143);
+    const ariane4_free_real_t t144 = ariane4_free_sign(t143); /* joint j3: coulomb_friction */
+    /* joint j3: drive */
     const ariane4_free_real_t t145 = ARIANE4_FREE_C(-7124.375926654358) * t137
         + ARIANE4_FREE_C(-188.12627071923498) * (t141 * t141) * (t139 * t139);
+    /* joint j3: drive_inertia */
     const ariane4_free_real_t t146 = (t142 * ddq[2] + t141 * t145 * (dq[2] * dq[2])) * parameters[IA3];
     const ariane4_free_real_t t147 = ARIANE4_FREE_C(-333.3333333333333) * (t143 * parameters[FV3]
         + t144 * parameters[FC3] + t146) - t140 * t121;
     out[2] = t147;
-    const ariane4_free_real_t t148 = ariane4_free_sign(dq[3]);
+    const ariane4_free_real_t t148 = ariane4_free_sign(dq[3]); /* joint j4: coulomb_friction */
     const ariane4_free_real_t t149 = ARIANE4_FREE_C(1.0e2) * dq[3] * parameters[FV4] + t148 * parameters[FC4]
         + ARIANE4_FREE_C(1.0e2) * ddq[3] * parameters[IA4];
     out[3] = ARIANE4_FREE_C(20.0) * t149 + ARIANE4_FREE_C(0.2) * t84;

@@ -20,15 +20,15 @@
  */
 #include "ariane4_free_private.h"
 
-#if ARIANE4_FREE_GENERATION != 0x261051E4UL
+#if ARIANE4_FREE_GENERATION != 0x6EBE5535UL
 #error "ariane4_free.h and ariane4_free_jacobian.c are of different generations: generate the arm again"
 #endif
 
-int ariane4_free_jacobian(
+ariane4_free_status_t ariane4_free_jacobian(
     const ariane4_free_real_t q[ARIANE4_FREE_N_JOINTS],
     ariane4_free_real_t out[6 * ARIANE4_FREE_N_JOINTS])
 {
-    int status = ARIANE4_FREE_STATUS_OK;
+    ariane4_free_status_t status = ARIANE4_FREE_STATUS_OK;
 
     if (!ariane4_free_within_joints(q, ARIANE4_FREE_C(1.0e8))) {
         status |= ARIANE4_FREE_STATUS_INPUT;
@@ -44,25 +44,28 @@ int ariane4_free_jacobian(
     ARIANE4_FREE_SINCOS(q[1], &t4, &t1);
     ariane4_free_real_t t6, t3;
     ARIANE4_FREE_SINCOS(q[2], &t6, &t3);
-    const ariane4_free_real_t t2 = t0 * t1;
+    const ariane4_free_real_t t2 = t0 * t1; /* link j2: pose */
     const ariane4_free_real_t t5 = t0 * t4;
-    const ariane4_free_real_t t7 = t6 * t2 + t3 * t5;
+    const ariane4_free_real_t t7 = t6 * t2 + t3 * t5; /* link j3: pose */
+    /* link j4: pose */
     const ariane4_free_real_t t8 = ARIANE4_FREE_C(0.1) * (t3 * t2 - t6 * t5) + ARIANE4_FREE_C(0.436) * t7;
-    const ariane4_free_real_t t9 = ARIANE4_FREE_C(-0.116) * t0;
-    const ariane4_free_real_t t10 = t9 + ARIANE4_FREE_C(-0.443) * t2 + t8;
+    const ariane4_free_real_t t9 = ARIANE4_FREE_C(-0.116) * t0; /* link j2: pose */
+    const ariane4_free_real_t t10 = t9 + ARIANE4_FREE_C(-0.443) * t2 + t8; /* link j4: pose */
     out[0] = t10;
-    const ariane4_free_real_t t11 = t1 * t3 - t4 * t6;
+    const ariane4_free_real_t t11 = t1 * t3 - t4 * t6; /* link j3: motion */
+    /* link j4: pose */
     const ariane4_free_real_t t12 = ARIANE4_FREE_C(0.1) * (t4 * t3 + t1 * t6) + ARIANE4_FREE_C(-0.436) * t11;
     const ariane4_free_real_t t13 = ARIANE4_FREE_C(-0.443) * t4 + t12;
     out[1] = t14 * t13;
     out[2] = t14 * t12;
-    const ariane4_free_real_t t15 = t14 * t1;
+    const ariane4_free_real_t t15 = t14 * t1; /* link j2: pose */
     const ariane4_free_real_t t16 = t14 * t4;
-    const ariane4_free_real_t t17 = t6 * t15 + t3 * t16;
+    const ariane4_free_real_t t17 = t6 * t15 + t3 * t16; /* link j3: pose */
+    /* link j4: pose */
     const ariane4_free_real_t t18 = ARIANE4_FREE_C(0.1) * (t6 * t16 - t3 * t15)
         + ARIANE4_FREE_C(-0.436) * t17;
-    const ariane4_free_real_t t19 = ARIANE4_FREE_C(0.116) * t14;
-    const ariane4_free_real_t t20 = t19 + ARIANE4_FREE_C(0.443) * t15 + t18;
+    const ariane4_free_real_t t19 = ARIANE4_FREE_C(0.116) * t14; /* link j2: pose */
+    const ariane4_free_real_t t20 = t19 + ARIANE4_FREE_C(0.443) * t15 + t18; /* link j4: pose */
     out[4] = t20;
     out[5] = t0 * t13;
     out[6] = t0 * t12;

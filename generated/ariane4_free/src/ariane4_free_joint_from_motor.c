@@ -24,11 +24,11 @@
  */
 #include "ariane4_free_private.h"
 
-#if ARIANE4_FREE_GENERATION != 0x261051E4UL
+#if ARIANE4_FREE_GENERATION != 0x6EBE5535UL
 #error "ariane4_free.h and ariane4_free_joint_from_motor.c are of different generations: generate the arm again"
 #endif
 
-int ariane4_free_joint_from_motor(
+ariane4_free_status_t ariane4_free_joint_from_motor(
     const ariane4_free_real_t q_m[ARIANE4_FREE_N_JOINTS],
     const ariane4_free_real_t dq_m[ARIANE4_FREE_N_JOINTS],
     const ariane4_free_real_t ddq_m[ARIANE4_FREE_N_JOINTS],
@@ -36,7 +36,7 @@ int ariane4_free_joint_from_motor(
     ariane4_free_real_t dq[ARIANE4_FREE_N_JOINTS],
     ariane4_free_real_t ddq[ARIANE4_FREE_N_JOINTS])
 {
-    int status = ARIANE4_FREE_STATUS_OK;
+    ariane4_free_status_t status = ARIANE4_FREE_STATUS_OK;
 
     if (!ariane4_free_within_joints(q_m, ARIANE4_FREE_C(1.0e18))
         || !ariane4_free_within_joints(dq_m, ARIANE4_FREE_C(1.0e18))

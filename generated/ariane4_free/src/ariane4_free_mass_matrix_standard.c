@@ -76,11 +76,11 @@
  */
 #include "ariane4_free_private.h"
 
-#if ARIANE4_FREE_GENERATION != 0x261051E4UL
+#if ARIANE4_FREE_GENERATION != 0x6EBE5535UL
 #error "ariane4_free.h and ariane4_free_mass_matrix_standard.c are of different generations: generate the arm again"
 #endif
 
-int ariane4_free_mass_matrix_standard(
+ariane4_free_status_t ariane4_free_mass_matrix_standard(
     const ariane4_free_real_t q[ARIANE4_FREE_N_JOINTS],
     const ariane4_free_real_t parameters[ARIANE4_FREE_N_STANDARD_PARAMETERS],
     ariane4_free_real_t out[ARIANE4_FREE_N_JOINTS * ARIANE4_FREE_N_JOINTS])
@@ -88,7 +88,7 @@ int ariane4_free_mass_matrix_standard(
     enum { XX1 = 0, XY1, XZ1, YY1, YZ1, ZZ1, MX1, MY1, MZ1, M1, XX2, XY2, XZ2, YY2, YZ2, ZZ2, MX2, MY2, MZ2,
         M2, XX3, XY3, XZ3, YY3, YZ3, ZZ3, MX3, MY3, MZ3, M3, XX4, XY4, XZ4, YY4, YZ4, ZZ4, MX4, MY4, MZ4, M4,
         FV1, FC1, IA1, FV2, FC2, IA2, FV3, FC3, IA3, FV4, FC4, IA4 };
-    int status = ARIANE4_FREE_STATUS_OK;
+    ariane4_free_status_t status = ARIANE4_FREE_STATUS_OK;
 
     if (!ariane4_free_within_joints(q, ARIANE4_FREE_C(1.0e8))
         || !ARIANE4_FREE_PARAMETERS_USABLE(ariane4_free_within(parameters, 52, ARIANE4_FREE_C(1.0e18)))) {
@@ -112,37 +112,47 @@ int ariane4_free_mass_matrix_standard(
     ARIANE4_FREE_SINCOS(q[2], &t15, &t11);
     ariane4_free_real_t t1, t0;
     ARIANE4_FREE_SINCOS(q[3], &t1, &t0);
+    /* link j4: inertia of it and all beyond */
     const ariane4_free_real_t t2 = t0 * (parameters[YY4] - parameters[XX4])
         + parameters[XY4] * (ARIANE4_FREE_C(2.0) * t1);
     const ariane4_free_real_t t3 = t0 * t2;
     const ariane4_free_real_t t4 = ARIANE4_FREE_C(0.436) * parameters[M4];
     const ariane4_free_real_t t5 = ARIANE4_FREE_C(0.436) * (t4 + ARIANE4_FREE_C(2.0) * parameters[MZ4]);
     const ariane4_free_real_t t6 = parameters[XX3] + (parameters[YY4] - t3 + t5);
+    /* link j4: column of the mass matrix */
     const ariane4_free_real_t t7 = t1 * parameters[MY4] - t0 * parameters[MX4];
+    /* link j4: inertia of it and all beyond */
     const ariane4_free_real_t t8 = ARIANE4_FREE_C(0.1) * parameters[M4];
     const ariane4_free_real_t t9 = ARIANE4_FREE_C(0.1) * (t8 + ARIANE4_FREE_C(2.0) * t7);
     const ariane4_free_real_t t10 = parameters[YY3] + (parameters[ZZ4] + t9);
+    /* link j4: column of the mass matrix */
     const ariane4_free_real_t t12 = t0 * parameters[XZ4] - t1 * parameters[YZ4];
-    const ariane4_free_real_t t13 = t7 + t8;
+    const ariane4_free_real_t t13 = t7 + t8; /* link j4: inertia of it and all beyond */
     const ariane4_free_real_t t14 = parameters[XY3] + (t12 + (ARIANE4_FREE_C(0.1) * parameters[MZ4]
         + ARIANE4_FREE_C(0.436) * t13));
+    /* link j3: inertia of it and all beyond */
     const ariane4_free_real_t t16 = t11 * (t6 - t10) - t14 * (ARIANE4_FREE_C(2.0) * t15);
     const ariane4_free_real_t t17 = t11 * t16;
     const ariane4_free_real_t t18 = parameters[XX2] + (t10 + t17);
-    const ariane4_free_real_t t19 = parameters[MX3] - t13;
+    const ariane4_free_real_t t19 = parameters[MX3] - t13; /* link j4: inertia of it and all beyond */
     const ariane4_free_real_t t20 = parameters[MY3] + (parameters[MZ4] + t4);
-    const ariane4_free_real_t t21 = t11 * t19 - t15 * t20;
+    const ariane4_free_real_t t21 = t11 * t19 - t15 * t20; /* link j3: column of the mass matrix */
+    /* link j4: inertia of it and all beyond */
     const ariane4_free_real_t t22 = parameters[M3] + parameters[M4];
-    const ariane4_free_real_t t23 = ARIANE4_FREE_C(0.443) * t22;
+    const ariane4_free_real_t t23 = ARIANE4_FREE_C(0.443) * t22; /* link j3: inertia of it and all beyond */
     const ariane4_free_real_t t24 = ARIANE4_FREE_C(0.443) * (t23 + ARIANE4_FREE_C(2.0) * t21);
-    const ariane4_free_real_t t26 = t11 * t20 + t15 * t19;
+    const ariane4_free_real_t t26 = t11 * t20 + t15 * t19; /* link j3: column of the mass matrix */
+    /* link j2: inertia of it and all beyond */
     const ariane4_free_real_t t28 = (parameters[XY2] + (t14 + t15 * t16
         + ARIANE4_FREE_C(-0.443) * t26)) * (ARIANE4_FREE_C(2.0) * t27);
     const ariane4_free_real_t t29 = t25 * (parameters[YY2] + (t6 - t17 + t24) - t18) + t28;
+    /* link j2: column of the mass matrix */
     const ariane4_free_real_t t30 = t25 * (parameters[MX2] + (t21 + t23)) - t27 * (parameters[MY2] + t26);
+    /* link j2: inertia of it and all beyond */
     const ariane4_free_real_t t31 = t18 + t25 * t29
         + ARIANE4_FREE_C(0.116) * (ARIANE4_FREE_C(0.116) * (parameters[M2] + t22)
         + ARIANE4_FREE_C(2.0) * t30);
+    /* joint j1: drive */
     const ariane4_free_real_t
         t34 = ARIANE4_FREE_SQRT(ARIANE4_FREE_C(0.037468) * (ARIANE4_FREE_C(0.28217402066925895) * t33
         + ARIANE4_FREE_C(0.9593632378089879) * t32) + ARIANE4_FREE_C(0.10769300000000001));
@@ -150,39 +160,48 @@ int ariane4_free_mass_matrix_standard(
     const ariane4_free_real_t t36 = (ARIANE4_FREE_C(0.28217402066925895) * t32
         + ARIANE4_FREE_C(-0.9593632378089879) * t33) * (ARIANE4_FREE_C(3885.523436256565) * t35);
     out[0] = parameters[ZZ1] + t31 + t36 * t36 * parameters[IA1];
+    /* link j4: column of the mass matrix */
     const ariane4_free_real_t t37 = t0 * parameters[MY4] + t1 * parameters[MX4];
+    /* link j4: inertia of it and all beyond */
     const ariane4_free_real_t t38 = parameters[XZ3] + (t1 * t2 - parameters[XY4]
         + ARIANE4_FREE_C(-0.1) * t37);
+    /* link j4: column of the mass matrix */
     const ariane4_free_real_t t39 = ARIANE4_FREE_C(0.436) * t37 - (t1 * parameters[XZ4]
         + t0 * parameters[YZ4]);
-    const ariane4_free_real_t t40 = parameters[YZ3] + t39;
-    const ariane4_free_real_t t41 = t11 * t38 - t15 * t40;
+    const ariane4_free_real_t t40 = parameters[YZ3] + t39; /* link j4: inertia of it and all beyond */
+    const ariane4_free_real_t t41 = t11 * t38 - t15 * t40; /* link j3: column of the mass matrix */
     const ariane4_free_real_t t42 = t15 * t38 + t11 * t40;
+    /* link j2: column of the mass matrix */
     const ariane4_free_real_t t43 = t27 * (parameters[XZ2] + (t41 + ARIANE4_FREE_C(0.443) * (t37
         - parameters[MZ3]))) + t25 * (parameters[YZ2] + t42);
     out[1] = t43;
-    const ariane4_free_real_t t44 = t27 * t41 + t25 * t42;
+    const ariane4_free_real_t t44 = t27 * t41 + t25 * t42; /* link j3: column of the mass matrix */
     out[2] = t44;
-    const ariane4_free_real_t t45 = t12 + ARIANE4_FREE_C(0.436) * t7;
+    const ariane4_free_real_t t45 = t12 + ARIANE4_FREE_C(0.436) * t7; /* link j4: column of the mass matrix */
     const ariane4_free_real_t t46 = parameters[ZZ4] + ARIANE4_FREE_C(0.1) * t7;
     const ariane4_free_real_t t47 = t25 * (t15 * t45 + t11 * t46 + ARIANE4_FREE_C(-0.443) * t7);
     const ariane4_free_real_t t48 = t27 * (t11 * t45 - t15 * t46) + t47 + ARIANE4_FREE_C(-0.116) * t7;
     out[3] = t48;
     out[4] = t43;
+    /* joint j2: drive */
     const ariane4_free_real_t
         t49 = ARIANE4_FREE_SQRT(ARIANE4_FREE_C(0.078402) * (ARIANE4_FREE_C(-0.8305958991958126) * t25
         + ARIANE4_FREE_C(0.5568756164881881) * t27) + ARIANE4_FREE_C(0.293698));
     const ariane4_free_real_t t50 = ARIANE4_FREE_C(1.0) / t49;
     const ariane4_free_real_t t51 = (ARIANE4_FREE_C(0.8305958991958126) * t27
         + ARIANE4_FREE_C(0.5568756164881881) * t25) * (ARIANE4_FREE_C(2656.3065671641784) * t50);
+    /* link j4: inertia of it and all beyond */
     const ariane4_free_real_t t52 = parameters[ZZ3] + (parameters[XX4] + t3 + (t9 + t5));
     out[5] = parameters[ZZ2] + (t52 + t24) + t51 * t51 * parameters[IA2];
+    /* link j3: column of the mass matrix */
     const ariane4_free_real_t t53 = t52 + ARIANE4_FREE_C(0.443) * t21;
     out[6] = t53;
+    /* link j4: column of the mass matrix */
     const ariane4_free_real_t t54 = t39 + ARIANE4_FREE_C(-0.443) * (t15 * t37);
     out[7] = t54;
     out[8] = t44;
     out[9] = t53;
+    /* joint j3: drive */
     const ariane4_free_real_t
         t55 = ARIANE4_FREE_SQRT(ARIANE4_FREE_C(0.052812) * (ARIANE4_FREE_C(0.06366143813161289) * t11
         + ARIANE4_FREE_C(-0.9979715533496006) * t15) + ARIANE4_FREE_C(0.242037));

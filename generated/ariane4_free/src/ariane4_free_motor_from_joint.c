@@ -24,11 +24,11 @@
  */
 #include "ariane4_free_private.h"
 
-#if ARIANE4_FREE_GENERATION != 0x261051E4UL
+#if ARIANE4_FREE_GENERATION != 0x6EBE5535UL
 #error "ariane4_free.h and ariane4_free_motor_from_joint.c are of different generations: generate the arm again"
 #endif
 
-int ariane4_free_motor_from_joint(
+ariane4_free_status_t ariane4_free_motor_from_joint(
     const ariane4_free_real_t q[ARIANE4_FREE_N_JOINTS],
     const ariane4_free_real_t dq[ARIANE4_FREE_N_JOINTS],
     const ariane4_free_real_t ddq[ARIANE4_FREE_N_JOINTS],
@@ -36,7 +36,7 @@ int ariane4_free_motor_from_joint(
     ariane4_free_real_t dq_m[ARIANE4_FREE_N_JOINTS],
     ariane4_free_real_t ddq_m[ARIANE4_FREE_N_JOINTS])
 {
-    int status = ARIANE4_FREE_STATUS_OK;
+    ariane4_free_status_t status = ARIANE4_FREE_STATUS_OK;
 
     if (!ariane4_free_within_joints(q, ARIANE4_FREE_C(1.0e8))
         || !ariane4_free_within_joints(dq, ARIANE4_FREE_C(1.0e10))
@@ -61,44 +61,53 @@ int ariane4_free_motor_from_joint(
     ARIANE4_FREE_SINCOS(q[1], &t5, &t4);
     ariane4_free_real_t t9, t8;
     ARIANE4_FREE_SINCOS(q[2], &t9, &t8);
+    /* joint j1: drive */
     const ariane4_free_real_t t2 = ARIANE4_FREE_C(0.28217402066925895) * t0
         + ARIANE4_FREE_C(0.9593632378089879) * t1;
     const ariane4_free_real_t t3 = ARIANE4_FREE_SQRT(ARIANE4_FREE_C(0.037468) * t2
         + ARIANE4_FREE_C(0.10769300000000001));
     q_m[0] = ARIANE4_FREE_C(207404.90211682316) * t3 - ARIANE4_FREE_C(55554.854866305905);
+    /* joint j2: drive */
     const ariane4_free_real_t t6 = ARIANE4_FREE_C(0.8305958991958126) * t4
         - ARIANE4_FREE_C(0.5568756164881881) * t5;
     const ariane4_free_real_t t7 = ARIANE4_FREE_SQRT(ARIANE4_FREE_C(-0.078402) * t6
         + ARIANE4_FREE_C(0.293698));
     q_m[1] = ARIANE4_FREE_C(67761.19402985073) * t7 - ARIANE4_FREE_C(32805.36238805969);
+    /* joint j3: drive */
     const ariane4_free_real_t t10 = ARIANE4_FREE_C(0.06366143813161289) * t8
         - ARIANE4_FREE_C(0.9979715533496006) * t9;
     const ariane4_free_real_t t11 = ARIANE4_FREE_SQRT(ARIANE4_FREE_C(0.052812) * t10
         + ARIANE4_FREE_C(0.242037));
     q_m[2] = ARIANE4_FREE_C(269801.4059931212) * t11 - ARIANE4_FREE_C(118024.08544887889);
     q_m[3] = ARIANE4_FREE_C(1.0e2) * q[3];
+    /* joint j1: drive */
     const ariane4_free_real_t t12 = ARIANE4_FREE_C(-0.28217402066925895) * t1
         + ARIANE4_FREE_C(0.9593632378089879) * t0;
     const ariane4_free_real_t t13 = ARIANE4_FREE_C(-1.0) / t3;
     const ariane4_free_real_t t14 = t12 * (ARIANE4_FREE_C(-3885.523436256565) * t13);
     dq_m[0] = t14 * dq[0];
+    /* joint j2: drive */
     const ariane4_free_real_t t15 = ARIANE4_FREE_C(-0.8305958991958126) * t5
         + ARIANE4_FREE_C(-0.5568756164881881) * t4;
     const ariane4_free_real_t t16 = ARIANE4_FREE_C(1.0) / t7;
     const ariane4_free_real_t t17 = t15 * (ARIANE4_FREE_C(-2656.3065671641784) * t16);
     dq_m[1] = t17 * dq[1];
+    /* joint j3: drive */
     const ariane4_free_real_t t18 = ARIANE4_FREE_C(-0.06366143813161289) * t9
         + ARIANE4_FREE_C(-0.9979715533496006) * t8;
     const ariane4_free_real_t t19 = ARIANE4_FREE_C(-1.0) / t11;
     const ariane4_free_real_t t20 = t18 * (ARIANE4_FREE_C(-7124.375926654358) * t19);
     dq_m[2] = t20 * dq[2];
     dq_m[3] = ARIANE4_FREE_C(1.0e2) * dq[3];
+    /* joint j1: drive */
     const ariane4_free_real_t t21 = ARIANE4_FREE_C(-3885.523436256565) * t2
         + ARIANE4_FREE_C(-72.7913960548305) * (t13 * t13) * (t12 * t12);
     ddq_m[0] = t14 * ddq[0] - t13 * t21 * (dq[0] * dq[0]);
+    /* joint j2: drive */
     const ariane4_free_real_t t22 = ARIANE4_FREE_C(2656.3065671641784) * t6
         + ARIANE4_FREE_C(-104.12987373940295) * (t16 * t16) * (t15 * t15);
     ddq_m[1] = t17 * ddq[1] + t16 * t22 * (dq[1] * dq[1]);
+    /* joint j3: drive */
     const ariane4_free_real_t t23 = ARIANE4_FREE_C(-7124.375926654358) * t10
         + ARIANE4_FREE_C(-188.12627071923498) * (t19 * t19) * (t18 * t18);
     ddq_m[2] = t20 * ddq[2] - t19 * t23 * (dq[2] * dq[2]);

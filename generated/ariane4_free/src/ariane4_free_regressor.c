@@ -6,7 +6,7 @@
  * Arm ariane4_free, description 79391f27012d8ce4.
  * SPDX-License-Identifier: 0BSD
  *
- * Operations: 374 (251 mul, 119 add, 4 neg), 6 div, 3 sqrt, 8 trig, 4 other.
+ * Operations: 374 (251 mul, 119 add, 4 neg), 6 div, 3 sqrt, 8 trig, 4 other calls (sign, select and the like).
  *
  * @param[in]   q    [4]    [rad]                          joint coordinates; norm at most 10000
  * @param[in]   dq   [4]    [rad/s]                        joint velocities; norm at most 100000
@@ -29,17 +29,17 @@
  */
 #include "ariane4_free_private.h"
 
-#if ARIANE4_FREE_GENERATION != 0x261051E4UL
+#if ARIANE4_FREE_GENERATION != 0x6EBE5535UL
 #error "ariane4_free.h and ariane4_free_regressor.c are of different generations: generate the arm again"
 #endif
 
-int ariane4_free_regressor(
+ariane4_free_status_t ariane4_free_regressor(
     const ariane4_free_real_t q[ARIANE4_FREE_N_JOINTS],
     const ariane4_free_real_t dq[ARIANE4_FREE_N_JOINTS],
     const ariane4_free_real_t ddq[ARIANE4_FREE_N_JOINTS],
     ariane4_free_real_t out[ARIANE4_FREE_N_JOINTS * ARIANE4_FREE_N_PARAMETERS])
 {
-    int status = ARIANE4_FREE_STATUS_OK;
+    ariane4_free_status_t status = ARIANE4_FREE_STATUS_OK;
 
     if (!ariane4_free_within_joints(q, ARIANE4_FREE_C(1.0e8))
         || !ariane4_free_within_joints(dq, ARIANE4_FREE_C(1.0e10))
@@ -64,6 +64,7 @@ int ariane4_free_regressor(
     ARIANE4_FREE_SINCOS(q[2], &t35, &t36);
     ariane4_free_real_t t85, t84;
     ARIANE4_FREE_SINCOS(q[3], &t85, &t84);
+    /* joint j1: drive */
     const ariane4_free_real_t t2 = ARIANE4_FREE_C(0.28217402066925895) * t0
         + ARIANE4_FREE_C(0.9593632378089879) * t1;
     const ariane4_free_real_t t3 = ARIANE4_FREE_SQRT(ARIANE4_FREE_C(0.037468) * t2
@@ -72,16 +73,17 @@ int ariane4_free_regressor(
         + ARIANE4_FREE_C(0.9593632378089879) * t0;
     const ariane4_free_real_t t5 = ARIANE4_FREE_C(0.06434139546481742) * t3 / t4;
     out[0] = t5 * ddq[0];
-    const ariane4_free_real_t t7 = t6 * t5;
-    const ariane4_free_real_t t9 = t8 * dq[0];
+    const ariane4_free_real_t t7 = t6 * t5; /* link j2: velocities by those of the joints */
+    const ariane4_free_real_t t9 = t8 * dq[0]; /* link j2: motion */
     const ariane4_free_real_t t10 = dq[1] * t9;
     const ariane4_free_real_t t11 = t6 * ddq[0];
     const ariane4_free_real_t t12 = t10 + t11;
-    const ariane4_free_real_t t13 = t8 * t5;
-    const ariane4_free_real_t t14 = t6 * dq[0];
+    const ariane4_free_real_t t13 = t8 * t5; /* link j2: velocities by those of the joints */
+    const ariane4_free_real_t t14 = t6 * dq[0]; /* link j2: motion */
     const ariane4_free_real_t t15 = dq[1] * t14;
-    const ariane4_free_real_t t16 = t15 * t13;
+    const ariane4_free_real_t t16 = t15 * t13; /* link j2: columns */
     out[1] = t12 * t7 + t16;
+    /* joint j2: drive */
     const ariane4_free_real_t t17 = ARIANE4_FREE_C(0.8305958991958126) * t8
         - ARIANE4_FREE_C(0.5568756164881881) * t6;
     const ariane4_free_real_t t18 = ARIANE4_FREE_SQRT(ARIANE4_FREE_C(-0.078402) * t17
@@ -89,16 +91,16 @@ int ariane4_free_regressor(
     const ariane4_free_real_t t19 = ARIANE4_FREE_C(0.8305958991958126) * t6
         + ARIANE4_FREE_C(0.5568756164881881) * t8;
     const ariane4_free_real_t t20 = ARIANE4_FREE_C(0.03137188092799786) * t18 / t19;
-    const ariane4_free_real_t t21 = t14 * t9;
+    const ariane4_free_real_t t21 = t14 * t9; /* link j2: motion */
     out[35] = -(t20 * t21);
-    const ariane4_free_real_t t22 = t10 + t12;
-    const ariane4_free_real_t t23 = t8 * ddq[0];
-    const ariane4_free_real_t t24 = t15 + (t15 - t23);
+    const ariane4_free_real_t t22 = t10 + t12; /* link j3: motion */
+    const ariane4_free_real_t t23 = t8 * ddq[0]; /* link j2: motion */
+    const ariane4_free_real_t t24 = t15 + (t15 - t23); /* link j3: motion */
     out[2] = t22 * t13 - t24 * t7;
-    const ariane4_free_real_t t25 = t14 * t14;
+    const ariane4_free_real_t t25 = t14 * t14; /* link j2: motion */
     const ariane4_free_real_t t26 = t9 * t9;
     out[36] = t20 * (t25 - t26);
-    const ariane4_free_real_t t27 = ddq[1] + t21;
+    const ariane4_free_real_t t27 = ddq[1] + t21; /* link j3: motion */
     const ariane4_free_real_t t28 = dq[1] * dq[1];
     out[3] = t27 * t7 - (t25 - t28) * t13;
     out[37] = t20 * t11;
@@ -106,8 +108,9 @@ int ariane4_free_regressor(
     out[38] = t20 * t23;
     out[5] = t10 * t7 - t16;
     out[39] = t20 * ddq[1];
+    /* link j2: velocities by those of the joints */
     const ariane4_free_real_t t29 = ARIANE4_FREE_C(-0.116) * t5;
-    const ariane4_free_real_t t30 = ARIANE4_FREE_C(0.116) * ddq[0];
+    const ariane4_free_real_t t30 = ARIANE4_FREE_C(0.116) * ddq[0]; /* link j2: motion */
     out[6] = t24 * t29 + t30 * t13;
     const ariane4_free_real_t t31 = dq[0] * dq[0];
     const ariane4_free_real_t t32 = ARIANE4_FREE_C(0.116) * t31;
@@ -116,22 +119,23 @@ int ariane4_free_regressor(
     out[7] = t22 * t29 - t30 * t7;
     const ariane4_free_real_t t34 = t8 * t32 + ARIANE4_FREE_C(-9.81) * t6;
     out[41] = t20 * t34;
-    const ariane4_free_real_t t37 = t8 * t36 - t6 * t35;
+    const ariane4_free_real_t t37 = t8 * t36 - t6 * t35; /* link j3: motion */
     const ariane4_free_real_t t38 = dq[0] * t37;
     const ariane4_free_real_t t39 = dq[1] + dq[2];
     const ariane4_free_real_t t40 = t39 * t38;
     const ariane4_free_real_t t41 = t6 * t36 + t8 * t35;
     const ariane4_free_real_t t42 = ddq[0] * t41;
     const ariane4_free_real_t t43 = t40 + t42;
-    const ariane4_free_real_t t44 = t5 * t41;
+    const ariane4_free_real_t t44 = t5 * t41; /* link j3: velocities by those of the joints */
     const ariane4_free_real_t t45 = t5 * t37;
-    const ariane4_free_real_t t46 = dq[0] * t41;
+    const ariane4_free_real_t t46 = dq[0] * t41; /* link j3: motion */
     const ariane4_free_real_t t47 = t39 * t46;
-    const ariane4_free_real_t t48 = t47 * t45;
+    const ariane4_free_real_t t48 = t47 * t45; /* link j3: columns */
     out[8] = t43 * t44 + t48;
-    const ariane4_free_real_t t49 = t46 * t38;
+    const ariane4_free_real_t t49 = t46 * t38; /* link j3: motion */
     const ariane4_free_real_t t50 = t20 * t49;
     out[42] = -t50;
+    /* joint j3: drive */
     const ariane4_free_real_t t51 = ARIANE4_FREE_C(0.06366143813161289) * t36
         - ARIANE4_FREE_C(0.9979715533496006) * t35;
     const ariane4_free_real_t t52 = ARIANE4_FREE_SQRT(ARIANE4_FREE_C(0.052812) * t51
@@ -139,28 +143,28 @@ int ariane4_free_regressor(
     const ariane4_free_real_t t53 = ARIANE4_FREE_C(-0.06366143813161289) * t35
         + ARIANE4_FREE_C(-0.9979715533496006) * t36;
     const ariane4_free_real_t t54 = ARIANE4_FREE_C(-0.046787723832235825) * t52 / t53;
-    const ariane4_free_real_t t55 = ARIANE4_FREE_C(1.0) / t18;
+    const ariane4_free_real_t t55 = ARIANE4_FREE_C(1.0) / t18; /* joint j2: drive */
     const ariane4_free_real_t t56 = t19 * (ARIANE4_FREE_C(2656.3065671641784) * t55);
     const ariane4_free_real_t t57 = t54 * (ARIANE4_FREE_C(-0.012) * t56);
     out[76] = -(t50 * t57);
-    const ariane4_free_real_t t58 = t40 + t43;
-    const ariane4_free_real_t t59 = ddq[0] * t37;
+    const ariane4_free_real_t t58 = t40 + t43; /* link j4: motion */
+    const ariane4_free_real_t t59 = ddq[0] * t37; /* link j3: motion */
     const ariane4_free_real_t t60 = t47 - t59;
-    const ariane4_free_real_t t61 = t47 + t60;
+    const ariane4_free_real_t t61 = t47 + t60; /* link j4: motion */
     out[9] = t58 * t45 - t61 * t44;
-    const ariane4_free_real_t t62 = t46 * t46;
+    const ariane4_free_real_t t62 = t46 * t46; /* link j3: motion */
     const ariane4_free_real_t t63 = t38 * t38;
     const ariane4_free_real_t t64 = t20 * (t62 - t63);
     out[43] = t64;
     out[77] = t64 * t57;
     const ariane4_free_real_t t65 = ddq[1] + ddq[2];
-    const ariane4_free_real_t t66 = t49 + t65;
-    const ariane4_free_real_t t67 = t39 * t39;
+    const ariane4_free_real_t t66 = t49 + t65; /* link j4: motion */
+    const ariane4_free_real_t t67 = t39 * t39; /* link j3: motion */
     out[10] = t66 * t44 + (t67 - t62) * t45;
     const ariane4_free_real_t t68 = t20 * t42;
     out[44] = t68;
     out[78] = t68 * t57;
-    const ariane4_free_real_t t69 = t65 - t49;
+    const ariane4_free_real_t t69 = t65 - t49; /* link j4: motion */
     out[11] = t69 * t45 - (t67 - t63) * t44;
     const ariane4_free_real_t t70 = t20 * t59;
     out[45] = t70;
@@ -169,67 +173,69 @@ int ariane4_free_regressor(
     const ariane4_free_real_t t71 = t20 * t65;
     out[46] = t71;
     out[80] = t71 * t57;
+    /* link j3: velocities by those of the joints */
     const ariane4_free_real_t t72 = t29 + ARIANE4_FREE_C(-0.443) * t13;
-    const ariane4_free_real_t t73 = t30 + ARIANE4_FREE_C(-0.443) * t24;
+    const ariane4_free_real_t t73 = t30 + ARIANE4_FREE_C(-0.443) * t24; /* link j3: motion */
     out[13] = t61 * t72 + t73 * t45;
-    const ariane4_free_real_t t74 = t67 + t63;
+    const ariane4_free_real_t t74 = t67 + t63; /* link j4: motion */
+    /* link j3: velocities by those of the joints */
     const ariane4_free_real_t t75 = ARIANE4_FREE_C(-0.443) * t20;
     const ariane4_free_real_t t76 = t35 * t75;
     const ariane4_free_real_t t77 = t36 * t75;
-    const ariane4_free_real_t t78 = t34 + ARIANE4_FREE_C(0.443) * (t28 + t26);
+    const ariane4_free_real_t t78 = t34 + ARIANE4_FREE_C(0.443) * (t28 + t26); /* link j3: motion */
     const ariane4_free_real_t t79 = ARIANE4_FREE_C(-0.443) * t27 - t33;
     const ariane4_free_real_t t80 = t35 * t78 - t36 * t79;
-    const ariane4_free_real_t t81 = t20 * t80;
+    const ariane4_free_real_t t81 = t20 * t80; /* link j3: columns */
     out[47] = t74 * t76 - t66 * t77 + t81;
     out[81] = t57 * t81;
     out[14] = t58 * t72 - t73 * t44;
-    const ariane4_free_real_t t82 = t36 * t78 + t35 * t79;
-    const ariane4_free_real_t t83 = t20 * t82;
+    const ariane4_free_real_t t82 = t36 * t78 + t35 * t79; /* link j3: motion */
+    const ariane4_free_real_t t83 = t20 * t82; /* link j3: columns */
     out[48] = t69 * t76 + (t67 + t62) * t77 + t83;
     out[82] = t57 * t83;
-    const ariane4_free_real_t t86 = t85 * t39 - t84 * t46;
+    const ariane4_free_real_t t86 = t85 * t39 - t84 * t46; /* link j4: motion */
     const ariane4_free_real_t t87 = dq[3] + t38;
     const ariane4_free_real_t t88 = t86 * t87;
-    const ariane4_free_real_t t89 = t85 * t44;
-    const ariane4_free_real_t t90 = t88 * t89;
-    const ariane4_free_real_t t91 = t84 * t39 + t85 * t46;
+    const ariane4_free_real_t t89 = t85 * t44; /* link j4: velocities by those of the joints */
+    const ariane4_free_real_t t90 = t88 * t89; /* link j4: columns */
+    const ariane4_free_real_t t91 = t84 * t39 + t85 * t46; /* link j4: motion */
     const ariane4_free_real_t t92 = t86 * t91;
     const ariane4_free_real_t t93 = t84 * t58 - t85 * t69;
     const ariane4_free_real_t t94 = t91 * t87;
     const ariane4_free_real_t t95 = t94 - t93;
-    const ariane4_free_real_t t96 = t84 * t44;
+    const ariane4_free_real_t t96 = t84 * t44; /* link j4: velocities by those of the joints */
     out[15] = t90 - t92 * t45 - t95 * t96;
     const ariane4_free_real_t t97 = t85 * t20;
     const ariane4_free_real_t t98 = t84 * t20;
-    const ariane4_free_real_t t99 = t88 * t98;
+    const ariane4_free_real_t t99 = t88 * t98; /* link j4: columns */
     const ariane4_free_real_t t100 = t95 * t97 + t99;
     out[49] = t100;
     out[83] = t57 * t100;
     out[117] = ARIANE4_FREE_C(-0.2) * t92;
-    const ariane4_free_real_t t101 = t94 + t95;
-    const ariane4_free_real_t t102 = t84 * t69 + t85 * t58;
-    const ariane4_free_real_t t103 = t102 - t88 - t88;
-    const ariane4_free_real_t t104 = t86 * t86;
+    const ariane4_free_real_t t101 = t94 + t95; /* link j4: force and moment */
+    const ariane4_free_real_t t102 = t84 * t69 + t85 * t58; /* link j4: motion */
+    const ariane4_free_real_t t103 = t102 - t88 - t88; /* link j4: force and moment */
+    const ariane4_free_real_t t104 = t86 * t86; /* link j4: motion */
     const ariane4_free_real_t t105 = t91 * t91;
-    const ariane4_free_real_t t106 = t104 - t105;
+    const ariane4_free_real_t t106 = t104 - t105; /* link j4: force and moment */
     out[16] = t101 * t89 - t103 * t96 + t106 * t45;
-    const ariane4_free_real_t t107 = t101 * t98 + t103 * t97;
+    const ariane4_free_real_t t107 = t101 * t98 + t103 * t97; /* link j4: columns */
     out[50] = t107;
     out[84] = t57 * t107;
     out[118] = ARIANE4_FREE_C(0.2) * t106;
-    const ariane4_free_real_t t108 = ddq[3] - t60;
-    const ariane4_free_real_t t109 = t92 + t108;
-    const ariane4_free_real_t t110 = t87 * t87;
-    const ariane4_free_real_t t111 = t104 - t110;
+    const ariane4_free_real_t t108 = ddq[3] - t60; /* link j4: motion */
+    const ariane4_free_real_t t109 = t92 + t108; /* link j4: force and moment */
+    const ariane4_free_real_t t110 = t87 * t87; /* link j4: motion */
+    const ariane4_free_real_t t111 = t104 - t110; /* link j4: force and moment */
     out[17] = t109 * t96 + t93 * t45 + t111 * t89;
-    const ariane4_free_real_t t112 = t111 * t98 - t109 * t97;
+    const ariane4_free_real_t t112 = t111 * t98 - t109 * t97; /* link j4: columns */
     out[51] = t112;
     out[85] = t57 * t112;
     out[119] = ARIANE4_FREE_C(0.2) * t93;
-    const ariane4_free_real_t t113 = t92 - t108;
+    const ariane4_free_real_t t113 = t92 - t108; /* link j4: force and moment */
     const ariane4_free_real_t t114 = t110 - t105;
     out[18] = t113 * t89 - t102 * t45 - t114 * t96;
-    const ariane4_free_real_t t115 = t113 * t98 + t114 * t97;
+    const ariane4_free_real_t t115 = t113 * t98 + t114 * t97; /* link j4: columns */
     out[52] = t115;
     out[86] = t57 * t115;
     out[120] = ARIANE4_FREE_C(-0.2) * t102;
@@ -238,27 +244,30 @@ int ariane4_free_regressor(
     out[53] = t116;
     out[87] = t57 * t116;
     out[121] = ARIANE4_FREE_C(0.2) * t108;
-    const ariane4_free_real_t t117 = t105 + t110;
+    const ariane4_free_real_t t117 = t105 + t110; /* link j4: force and moment */
+    /* link j4: velocities by those of the joints */
     const ariane4_free_real_t t118 = t72 + ARIANE4_FREE_C(0.1) * t45;
     const ariane4_free_real_t t119 = t85 * t118;
     const ariane4_free_real_t t120 = t84 * t118;
-    const ariane4_free_real_t t121 = ARIANE4_FREE_C(0.1) * t66 - t80;
+    const ariane4_free_real_t t121 = ARIANE4_FREE_C(0.1) * t66 - t80; /* link j4: motion */
     const ariane4_free_real_t t122 = ARIANE4_FREE_C(-0.1) * t74 + t82;
     const ariane4_free_real_t t123 = t73 + ARIANE4_FREE_C(0.1) * t61;
     const ariane4_free_real_t t124 = t85 * t122 + t84 * t123;
+    /* link j4: columns */
     const ariane4_free_real_t t125 = t117 * t119 - t109 * t120 + (t124 * t45 - t121 * t89);
     out[20] = t125;
-    const ariane4_free_real_t t126 = t84 * t76;
+    const ariane4_free_real_t t126 = t84 * t76; /* link j4: velocities by those of the joints */
     const ariane4_free_real_t t127 = t85 * t76;
     const ariane4_free_real_t t128 = ARIANE4_FREE_C(0.1) * t20;
     const ariane4_free_real_t t129 = t77 + t128;
-    const ariane4_free_real_t t130 = t121 * t98;
+    const ariane4_free_real_t t130 = t121 * t98; /* link j4: columns */
     const ariane4_free_real_t t131 = t117 * t126 + t109 * t127 - t103 * t129 - t130;
     out[54] = t131;
     out[88] = -(t57 * (t130 + t103 * t128));
     out[122] = ARIANE4_FREE_C(0.2) * t124;
-    const ariane4_free_real_t t132 = t104 + t110;
-    const ariane4_free_real_t t133 = t84 * t122 - t85 * t123;
+    const ariane4_free_real_t t132 = t104 + t110; /* link j4: force and moment */
+    const ariane4_free_real_t t133 = t84 * t122 - t85 * t123; /* link j4: motion */
+    /* link j4: columns */
     const ariane4_free_real_t t134 = t132 * t120 - t113 * t119 + (t133 * t45 - t121 * t96);
     out[21] = t134;
     const ariane4_free_real_t t135 = t121 * t97;
@@ -266,35 +275,38 @@ int ariane4_free_regressor(
     out[55] = t136;
     out[89] = t57 * (t135 + t101 * t128);
     out[123] = ARIANE4_FREE_C(0.2) * t133;
-    const ariane4_free_real_t t137 = ARIANE4_FREE_C(-1.0) / t3;
+    const ariane4_free_real_t t137 = ARIANE4_FREE_C(-1.0) / t3; /* joint j1: drive */
     const ariane4_free_real_t t138 = t4 * (ARIANE4_FREE_C(3885.523436256565) * t137);
     const ariane4_free_real_t t139 = t138 * dq[0];
     out[22] = ARIANE4_FREE_C(-250.0) * t139;
-    const ariane4_free_real_t t140 = ariane4_free_sign(t139);
+    const ariane4_free_real_t t140 = ariane4_free_sign(t139); /* joint j1: coulomb_friction */
     out[23] = ARIANE4_FREE_C(-250.0) * t140;
+    /* joint j1: drive */
     const ariane4_free_real_t t141 = ARIANE4_FREE_C(-3885.523436256565) * t2
         + ARIANE4_FREE_C(-72.7913960548305) * (t137 * t137) * (t4 * t4);
     out[24] = ARIANE4_FREE_C(-250.0) * (t137 * t141 * t31 + t138 * ddq[0]);
     const ariane4_free_real_t t142 = t56 * dq[1];
     out[59] = ARIANE4_FREE_C(83.33333333333333) * t142;
-    const ariane4_free_real_t t143 = ariane4_free_sign(t142);
+    const ariane4_free_real_t t143 = ariane4_free_sign(t142); /* joint j2: coulomb_friction */
     out[60] = ARIANE4_FREE_C(83.33333333333333) * t143;
+    /* joint j2: drive */
     const ariane4_free_real_t t144 = ARIANE4_FREE_C(2656.3065671641784) * t17
         + ARIANE4_FREE_C(-104.12987373940295) * (t55 * t55) * (t19 * t19);
     out[61] = ARIANE4_FREE_C(83.33333333333333) * (t55 * t144 * t28 + t56 * ddq[1]);
-    const ariane4_free_real_t t145 = ARIANE4_FREE_C(-1.0) / t52;
+    const ariane4_free_real_t t145 = ARIANE4_FREE_C(-1.0) / t52; /* joint j3: drive */
     const ariane4_free_real_t t146 = t53 * (ARIANE4_FREE_C(7124.375926654358) * t145);
     const ariane4_free_real_t t147 = t146 * dq[2];
     out[96] = ARIANE4_FREE_C(-333.3333333333333) * t147;
-    const ariane4_free_real_t t148 = ariane4_free_sign(t147);
+    const ariane4_free_real_t t148 = ariane4_free_sign(t147); /* joint j3: coulomb_friction */
     out[97] = ARIANE4_FREE_C(-333.3333333333333) * t148;
+    /* joint j3: drive */
     const ariane4_free_real_t t149 = ARIANE4_FREE_C(-7124.375926654358) * t51
         + ARIANE4_FREE_C(-188.12627071923498) * (t145 * t145) * (t53 * t53);
     const ariane4_free_real_t t150 = ARIANE4_FREE_C(-333.3333333333333) * (t145 * t149 * (dq[2] * dq[2])
         + t146 * ddq[2]);
     out[98] = t150;
     out[133] = ARIANE4_FREE_C(2.0e3) * dq[3];
-    const ariane4_free_real_t t151 = ariane4_free_sign(dq[3]);
+    const ariane4_free_real_t t151 = ariane4_free_sign(dq[3]); /* joint j4: coulomb_friction */
     out[134] = ARIANE4_FREE_C(20.0) * t151;
     out[135] = ARIANE4_FREE_C(2.0e3) * ddq[3];
     /* always zero */

@@ -6,7 +6,7 @@
  * Arm ariane4_free, description 79391f27012d8ce4.
  * SPDX-License-Identifier: 0BSD
  *
- * Operations: 435 (283 mul, 144 add, 8 neg), 6 div, 3 sqrt, 8 trig, 4 other.
+ * Operations: 435 (283 mul, 144 add, 8 neg), 6 div, 3 sqrt, 8 trig, 4 other calls (sign, select and the like).
  *
  * @param[in]   q    [4]    [rad]                          joint coordinates; norm at most 10000
  * @param[in]   dq   [4]    [rad/s]                        joint velocities; norm at most 100000
@@ -31,17 +31,17 @@
  */
 #include "ariane4_free_private.h"
 
-#if ARIANE4_FREE_GENERATION != 0x261051E4UL
+#if ARIANE4_FREE_GENERATION != 0x6EBE5535UL
 #error "ariane4_free.h and ariane4_free_regressor_standard.c are of different generations: generate the arm again"
 #endif
 
-int ariane4_free_regressor_standard(
+ariane4_free_status_t ariane4_free_regressor_standard(
     const ariane4_free_real_t q[ARIANE4_FREE_N_JOINTS],
     const ariane4_free_real_t dq[ARIANE4_FREE_N_JOINTS],
     const ariane4_free_real_t ddq[ARIANE4_FREE_N_JOINTS],
     ariane4_free_real_t out[ARIANE4_FREE_N_JOINTS * ARIANE4_FREE_N_STANDARD_PARAMETERS])
 {
-    int status = ARIANE4_FREE_STATUS_OK;
+    ariane4_free_status_t status = ARIANE4_FREE_STATUS_OK;
 
     if (!ariane4_free_within_joints(q, ARIANE4_FREE_C(1.0e8))
         || !ariane4_free_within_joints(dq, ARIANE4_FREE_C(1.0e10))
@@ -66,6 +66,7 @@ int ariane4_free_regressor_standard(
     ARIANE4_FREE_SINCOS(q[2], &t41, &t40);
     ariane4_free_real_t t98, t97;
     ARIANE4_FREE_SINCOS(q[3], &t98, &t97);
+    /* joint j1: drive */
     const ariane4_free_real_t t2 = ARIANE4_FREE_C(0.28217402066925895) * t0
         + ARIANE4_FREE_C(0.9593632378089879) * t1;
     const ariane4_free_real_t t3 = ARIANE4_FREE_SQRT(ARIANE4_FREE_C(0.037468) * t2
@@ -75,17 +76,18 @@ int ariane4_free_regressor_standard(
     const ariane4_free_real_t t5 = ARIANE4_FREE_C(-0.06434139546481742) * t3 / t4;
     const ariane4_free_real_t t6 = t5 * ddq[0];
     out[5] = -t6;
-    const ariane4_free_real_t t8 = t7 * t5;
-    const ariane4_free_real_t t9 = t7 * ddq[0];
+    const ariane4_free_real_t t8 = t7 * t5; /* link j2: velocities by those of the joints */
+    const ariane4_free_real_t t9 = t7 * ddq[0]; /* link j2: motion */
     const ariane4_free_real_t t11 = t10 * dq[0];
     const ariane4_free_real_t t12 = dq[1] * t11;
     const ariane4_free_real_t t13 = t9 + t12;
-    const ariane4_free_real_t t14 = t10 * t5;
-    const ariane4_free_real_t t15 = t7 * dq[0];
+    const ariane4_free_real_t t14 = t10 * t5; /* link j2: velocities by those of the joints */
+    const ariane4_free_real_t t15 = t7 * dq[0]; /* link j2: motion */
     const ariane4_free_real_t t16 = dq[1] * t15;
-    const ariane4_free_real_t t17 = t16 * t14;
+    const ariane4_free_real_t t17 = t16 * t14; /* link j2: columns */
     const ariane4_free_real_t t18 = t13 * t8 + t17;
     out[10] = -t18;
+    /* joint j2: drive */
     const ariane4_free_real_t t19 = ARIANE4_FREE_C(0.8305958991958126) * t10
         - ARIANE4_FREE_C(0.5568756164881881) * t7;
     const ariane4_free_real_t t20 = ARIANE4_FREE_SQRT(ARIANE4_FREE_C(-0.078402) * t19
@@ -93,19 +95,19 @@ int ariane4_free_regressor_standard(
     const ariane4_free_real_t t21 = ARIANE4_FREE_C(0.8305958991958126) * t7
         + ARIANE4_FREE_C(0.5568756164881881) * t10;
     const ariane4_free_real_t t22 = ARIANE4_FREE_C(0.03137188092799786) * t20 / t21;
-    const ariane4_free_real_t t23 = t15 * t11;
+    const ariane4_free_real_t t23 = t15 * t11; /* link j2: motion */
     const ariane4_free_real_t t24 = t22 * t23;
     out[62] = -t24;
-    const ariane4_free_real_t t25 = t12 + t13;
-    const ariane4_free_real_t t26 = t10 * ddq[0];
-    const ariane4_free_real_t t27 = t16 + (t16 - t26);
+    const ariane4_free_real_t t25 = t12 + t13; /* link j3: motion */
+    const ariane4_free_real_t t26 = t10 * ddq[0]; /* link j2: motion */
+    const ariane4_free_real_t t27 = t16 + (t16 - t26); /* link j3: motion */
     out[11] = t27 * t8 - t25 * t14;
-    const ariane4_free_real_t t28 = t15 * t15;
+    const ariane4_free_real_t t28 = t15 * t15; /* link j2: motion */
     const ariane4_free_real_t t29 = t11 * t11;
     out[63] = t22 * (t28 - t29);
-    const ariane4_free_real_t t30 = ddq[1] + t23;
-    const ariane4_free_real_t t31 = dq[1] * dq[1];
-    const ariane4_free_real_t t32 = (t28 - t31) * t14 - t30 * t8;
+    const ariane4_free_real_t t30 = ddq[1] + t23; /* link j3: motion */
+    const ariane4_free_real_t t31 = dq[1] * dq[1]; /* link j2: motion */
+    const ariane4_free_real_t t32 = (t28 - t31) * t14 - t30 * t8; /* link j2: columns */
     out[12] = t32;
     const ariane4_free_real_t t33 = t22 * t9;
     out[64] = t33;
@@ -115,34 +117,36 @@ int ariane4_free_regressor_standard(
     out[66] = t22 * t26;
     out[15] = t17 - t12 * t8;
     out[67] = t22 * ddq[1];
+    /* link j2: velocities by those of the joints */
     const ariane4_free_real_t t34 = ARIANE4_FREE_C(0.116) * t5;
-    const ariane4_free_real_t t35 = ARIANE4_FREE_C(-0.116) * ddq[0];
+    const ariane4_free_real_t t35 = ARIANE4_FREE_C(-0.116) * ddq[0]; /* link j2: motion */
     out[16] = t27 * t34 + t35 * t14;
-    const ariane4_free_real_t t36 = dq[0] * dq[0];
-    const ariane4_free_real_t t37 = ARIANE4_FREE_C(0.116) * t36;
+    const ariane4_free_real_t t36 = dq[0] * dq[0]; /* link j1: motion */
+    const ariane4_free_real_t t37 = ARIANE4_FREE_C(0.116) * t36; /* link j2: motion */
     const ariane4_free_real_t t38 = t7 * t37 + ARIANE4_FREE_C(9.81) * t10;
     out[68] = t22 * t38;
     out[17] = t25 * t34 - t35 * t8;
     const ariane4_free_real_t t39 = t10 * t37 + ARIANE4_FREE_C(-9.81) * t7;
     out[69] = t22 * t39;
     out[19] = t35 * t34;
-    const ariane4_free_real_t t42 = t7 * t40 + t10 * t41;
+    const ariane4_free_real_t t42 = t7 * t40 + t10 * t41; /* link j3: motion */
     const ariane4_free_real_t t43 = ddq[0] * t42;
     const ariane4_free_real_t t44 = t10 * t40 - t7 * t41;
     const ariane4_free_real_t t45 = dq[0] * t44;
     const ariane4_free_real_t t46 = dq[1] + dq[2];
     const ariane4_free_real_t t47 = t45 * t46;
     const ariane4_free_real_t t48 = t43 + t47;
-    const ariane4_free_real_t t49 = t5 * t42;
+    const ariane4_free_real_t t49 = t5 * t42; /* link j3: velocities by those of the joints */
     const ariane4_free_real_t t50 = t5 * t44;
-    const ariane4_free_real_t t51 = dq[0] * t42;
+    const ariane4_free_real_t t51 = dq[0] * t42; /* link j3: motion */
     const ariane4_free_real_t t52 = t51 * t46;
-    const ariane4_free_real_t t53 = t52 * t50;
+    const ariane4_free_real_t t53 = t52 * t50; /* link j3: columns */
     const ariane4_free_real_t t54 = t48 * t49 + t53;
     out[20] = -t54;
-    const ariane4_free_real_t t55 = t51 * t45;
+    const ariane4_free_real_t t55 = t51 * t45; /* link j3: motion */
     const ariane4_free_real_t t56 = t22 * t55;
     out[72] = -t56;
+    /* joint j3: drive */
     const ariane4_free_real_t t57 = ARIANE4_FREE_C(0.06366143813161289) * t40
         - ARIANE4_FREE_C(0.9979715533496006) * t41;
     const ariane4_free_real_t t58 = ARIANE4_FREE_SQRT(ARIANE4_FREE_C(0.052812) * t57
@@ -150,61 +154,63 @@ int ariane4_free_regressor_standard(
     const ariane4_free_real_t t59 = ARIANE4_FREE_C(-0.06366143813161289) * t41
         + ARIANE4_FREE_C(-0.9979715533496006) * t40;
     const ariane4_free_real_t t60 = ARIANE4_FREE_C(-0.046787723832235825) * t58 / t59;
-    const ariane4_free_real_t t61 = ARIANE4_FREE_C(1.0) / t20;
+    const ariane4_free_real_t t61 = ARIANE4_FREE_C(1.0) / t20; /* joint j2: drive */
     const ariane4_free_real_t t62 = t21 * (ARIANE4_FREE_C(2656.3065671641784) * t61);
     const ariane4_free_real_t t63 = t60 * (ARIANE4_FREE_C(-0.012) * t62);
     const ariane4_free_real_t t64 = t56 * t63;
     out[124] = -t64;
-    const ariane4_free_real_t t65 = t47 + t48;
-    const ariane4_free_real_t t66 = ddq[0] * t44;
+    const ariane4_free_real_t t65 = t47 + t48; /* link j4: motion */
+    const ariane4_free_real_t t66 = ddq[0] * t44; /* link j3: motion */
     const ariane4_free_real_t t67 = t52 - t66;
-    const ariane4_free_real_t t68 = t52 + t67;
-    const ariane4_free_real_t t69 = t68 * t49 - t65 * t50;
+    const ariane4_free_real_t t68 = t52 + t67; /* link j4: motion */
+    const ariane4_free_real_t t69 = t68 * t49 - t65 * t50; /* link j3: columns */
     out[21] = t69;
-    const ariane4_free_real_t t70 = t51 * t51;
+    const ariane4_free_real_t t70 = t51 * t51; /* link j3: motion */
     const ariane4_free_real_t t71 = t45 * t45;
     const ariane4_free_real_t t72 = t22 * (t70 - t71);
     out[73] = t72;
     out[125] = t72 * t63;
     const ariane4_free_real_t t73 = ddq[1] + ddq[2];
-    const ariane4_free_real_t t74 = t73 + t55;
-    const ariane4_free_real_t t75 = t46 * t46;
+    const ariane4_free_real_t t74 = t73 + t55; /* link j4: motion */
+    const ariane4_free_real_t t75 = t46 * t46; /* link j3: motion */
     out[22] = (t70 - t75) * t50 - t74 * t49;
     const ariane4_free_real_t t76 = t22 * t43;
     out[74] = t76;
     out[126] = t76 * t63;
-    const ariane4_free_real_t t77 = t47 * t49;
+    const ariane4_free_real_t t77 = t47 * t49; /* link j3: columns */
     out[23] = t67 * t50 + t77;
     out[75] = t56;
     out[127] = t64;
-    const ariane4_free_real_t t78 = t73 - t55;
+    const ariane4_free_real_t t78 = t73 - t55; /* link j4: motion */
     out[24] = (t75 - t71) * t49 - t78 * t50;
     const ariane4_free_real_t t79 = t22 * t66;
     out[76] = t79;
     out[128] = t79 * t63;
-    const ariane4_free_real_t t80 = t53 - t77;
+    const ariane4_free_real_t t80 = t53 - t77; /* link j3: columns */
     out[25] = t80;
     const ariane4_free_real_t t81 = t22 * t73;
     out[77] = t81;
     out[129] = t81 * t63;
+    /* link j3: velocities by those of the joints */
     const ariane4_free_real_t t82 = t34 + ARIANE4_FREE_C(0.443) * t14;
-    const ariane4_free_real_t t83 = t35 + ARIANE4_FREE_C(0.443) * t27;
+    const ariane4_free_real_t t83 = t35 + ARIANE4_FREE_C(0.443) * t27; /* link j3: motion */
     out[26] = t68 * t82 + t83 * t50;
-    const ariane4_free_real_t t84 = t71 + t75;
+    const ariane4_free_real_t t84 = t71 + t75; /* link j4: motion */
+    /* link j3: velocities by those of the joints */
     const ariane4_free_real_t t85 = ARIANE4_FREE_C(0.443) * t22;
     const ariane4_free_real_t t86 = t41 * t85;
     const ariane4_free_real_t t87 = t40 * t85;
-    const ariane4_free_real_t t88 = t39 + ARIANE4_FREE_C(0.443) * (t29 + t31);
+    const ariane4_free_real_t t88 = t39 + ARIANE4_FREE_C(0.443) * (t29 + t31); /* link j3: motion */
     const ariane4_free_real_t t89 = t38 + ARIANE4_FREE_C(0.443) * t30;
     const ariane4_free_real_t t90 = t41 * t88 + t40 * t89;
-    const ariane4_free_real_t t91 = t22 * t90;
+    const ariane4_free_real_t t91 = t22 * t90; /* link j3: columns */
     out[78] = t74 * t87 - t84 * t86 + t91;
     out[130] = t63 * t91;
     const ariane4_free_real_t t92 = t65 * t82 - t83 * t49;
     out[27] = t92;
-    const ariane4_free_real_t t93 = t70 + t75;
-    const ariane4_free_real_t t94 = t40 * t88 - t41 * t89;
-    const ariane4_free_real_t t95 = t22 * t94;
+    const ariane4_free_real_t t93 = t70 + t75; /* link j4: motion */
+    const ariane4_free_real_t t94 = t40 * t88 - t41 * t89; /* link j3: motion */
+    const ariane4_free_real_t t95 = t22 * t94; /* link j3: columns */
     const ariane4_free_real_t t96 = t95 - (t78 * t86 + t93 * t87);
     out[79] = t96;
     out[131] = t63 * t95;
@@ -212,42 +218,42 @@ int ariane4_free_regressor_standard(
     out[80] = ARIANE4_FREE_C(-0.443) * t33;
     out[29] = t83 * t82;
     out[81] = t90 * t87 - t94 * t86;
-    const ariane4_free_real_t t99 = t97 * t51 - t98 * t46;
+    const ariane4_free_real_t t99 = t97 * t51 - t98 * t46; /* link j4: motion */
     const ariane4_free_real_t t100 = dq[3] + t45;
     const ariane4_free_real_t t101 = t99 * t100;
-    const ariane4_free_real_t t102 = t98 * t49;
-    const ariane4_free_real_t t103 = t101 * t102;
-    const ariane4_free_real_t t104 = t98 * t51 + t97 * t46;
+    const ariane4_free_real_t t102 = t98 * t49; /* link j4: velocities by those of the joints */
+    const ariane4_free_real_t t103 = t101 * t102; /* link j4: columns */
+    const ariane4_free_real_t t104 = t98 * t51 + t97 * t46; /* link j4: motion */
     const ariane4_free_real_t t105 = t99 * t104;
     const ariane4_free_real_t t106 = t97 * t65 - t98 * t78;
     const ariane4_free_real_t t107 = t104 * t100;
     const ariane4_free_real_t t108 = t107 - t106;
-    const ariane4_free_real_t t109 = t97 * t49;
-    const ariane4_free_real_t t110 = t108 * t109 + (t103 - t105 * t50);
+    const ariane4_free_real_t t109 = t97 * t49; /* link j4: velocities by those of the joints */
+    const ariane4_free_real_t t110 = t108 * t109 + (t103 - t105 * t50); /* link j4: columns */
     out[30] = t110;
-    const ariane4_free_real_t t111 = t98 * t22;
+    const ariane4_free_real_t t111 = t98 * t22; /* link j4: velocities by those of the joints */
     const ariane4_free_real_t t112 = t97 * t22;
-    const ariane4_free_real_t t113 = t101 * t112;
+    const ariane4_free_real_t t113 = t101 * t112; /* link j4: columns */
     const ariane4_free_real_t t114 = t108 * t111 - t113;
     out[82] = t114;
     out[134] = t63 * t114;
     const ariane4_free_real_t t115 = ARIANE4_FREE_C(0.2) * t105;
     out[186] = t115;
     const ariane4_free_real_t t116 = t107 + t108;
-    const ariane4_free_real_t t117 = t97 * t78 + t98 * t65;
-    const ariane4_free_real_t t118 = t101 + (t117 + t101);
-    const ariane4_free_real_t t119 = t99 * t99;
+    const ariane4_free_real_t t117 = t97 * t78 + t98 * t65; /* link j4: motion */
+    const ariane4_free_real_t t118 = t101 + (t117 + t101); /* link j4: columns */
+    const ariane4_free_real_t t119 = t99 * t99; /* link j4: motion */
     const ariane4_free_real_t t120 = t104 * t104;
-    const ariane4_free_real_t t121 = t119 - t120;
+    const ariane4_free_real_t t121 = t119 - t120; /* link j4: columns */
     out[31] = t118 * t109 - t116 * t102 - t121 * t50;
     const ariane4_free_real_t t122 = t116 * t112 + t118 * t111;
     out[83] = t122;
     out[135] = t63 * t122;
     out[187] = ARIANE4_FREE_C(0.2) * t121;
-    const ariane4_free_real_t t123 = ddq[3] - t67;
-    const ariane4_free_real_t t124 = t105 - t123;
-    const ariane4_free_real_t t125 = t100 * t100;
-    const ariane4_free_real_t t126 = t119 - t125;
+    const ariane4_free_real_t t123 = ddq[3] - t67; /* link j4: motion */
+    const ariane4_free_real_t t124 = t105 - t123; /* link j4: columns */
+    const ariane4_free_real_t t125 = t100 * t100; /* link j4: motion */
+    const ariane4_free_real_t t126 = t119 - t125; /* link j4: columns */
     out[32] = t124 * t109 - t106 * t50 - t126 * t102;
     const ariane4_free_real_t t127 = t124 * t111 + t126 * t112;
     out[84] = t127;
@@ -270,25 +276,30 @@ int ariane4_free_regressor_standard(
     out[87] = t132;
     out[139] = t63 * t132;
     out[191] = ARIANE4_FREE_C(0.2) * t123;
+    /* link j4: motion */
     const ariane4_free_real_t t133 = t90 - (ARIANE4_FREE_C(0.1) * t74 + ARIANE4_FREE_C(0.436) * t93);
     const ariane4_free_real_t t134 = t94 + (ARIANE4_FREE_C(-0.1) * t84 + ARIANE4_FREE_C(0.436) * t78);
     const ariane4_free_real_t t135 = t83 + (ARIANE4_FREE_C(-0.1) * t68 + ARIANE4_FREE_C(0.436) * t65);
     const ariane4_free_real_t t136 = t98 * t134 - t97 * t135;
-    const ariane4_free_real_t t137 = t120 + t125;
+    const ariane4_free_real_t t137 = t120 + t125; /* link j4: columns */
+    /* link j4: velocities by those of the joints */
     const ariane4_free_real_t t138 = t82 + (ARIANE4_FREE_C(-0.436) * t49 + ARIANE4_FREE_C(-0.1) * t50);
+    /* link j4: columns */
     const ariane4_free_real_t t139 = (t98 * t137 + t97 * t124) * t138 - (t133 * t102 + t136 * t50);
     out[36] = t139;
+    /* link j4: velocities by those of the joints */
     const ariane4_free_real_t t140 = ARIANE4_FREE_C(-0.1) * t22;
     const ariane4_free_real_t t141 = t87 + t140;
-    const ariane4_free_real_t t142 = t98 * t124 - t97 * t137;
+    const ariane4_free_real_t t142 = t98 * t124 - t97 * t137; /* link j4: columns */
+    /* link j4: velocities by those of the joints */
     const ariane4_free_real_t t143 = ARIANE4_FREE_C(-0.436) * t22;
     const ariane4_free_real_t t144 = t86 + t143;
-    const ariane4_free_real_t t145 = t133 * t112;
+    const ariane4_free_real_t t145 = t133 * t112; /* link j4: columns */
     out[88] = t145 + (t118 * t141 + t142 * t144);
     out[140] = t63 * (t145 + (t118 * t140 + t142 * t143));
     out[192] = ARIANE4_FREE_C(0.2) * t136;
-    const ariane4_free_real_t t146 = t97 * t134 + t98 * t135;
-    const ariane4_free_real_t t147 = t119 + t125;
+    const ariane4_free_real_t t146 = t97 * t134 + t98 * t135; /* link j4: motion */
+    const ariane4_free_real_t t147 = t119 + t125; /* link j4: columns */
     const ariane4_free_real_t t148 = (t98 * t129 + t97 * t147) * t138 - (t133 * t109 + t146 * t50);
     out[37] = t148;
     const ariane4_free_real_t t149 = t98 * t147 - t97 * t129;
@@ -307,35 +318,38 @@ int ariane4_free_regressor_standard(
     const ariane4_free_real_t t153 = t98 * t136 + t97 * t146;
     out[91] = t133 * t141 - t153 * t144;
     out[143] = t63 * (t133 * t140 - t153 * t143);
-    const ariane4_free_real_t t154 = ARIANE4_FREE_C(-1.0) / t3;
+    const ariane4_free_real_t t154 = ARIANE4_FREE_C(-1.0) / t3; /* joint j1: drive */
     const ariane4_free_real_t t155 = t4 * (ARIANE4_FREE_C(3885.523436256565) * t154);
     const ariane4_free_real_t t156 = t155 * dq[0];
     out[40] = ARIANE4_FREE_C(-250.0) * t156;
-    const ariane4_free_real_t t157 = ariane4_free_sign(t156);
+    const ariane4_free_real_t t157 = ariane4_free_sign(t156); /* joint j1: coulomb_friction */
     out[41] = ARIANE4_FREE_C(-250.0) * t157;
+    /* joint j1: drive */
     const ariane4_free_real_t t158 = ARIANE4_FREE_C(-3885.523436256565) * t2
         + ARIANE4_FREE_C(-72.7913960548305) * (t154 * t154) * (t4 * t4);
     out[42] = ARIANE4_FREE_C(-250.0) * (t155 * ddq[0] + t154 * t158 * t36);
     const ariane4_free_real_t t159 = t62 * dq[1];
     out[95] = ARIANE4_FREE_C(83.33333333333333) * t159;
-    const ariane4_free_real_t t160 = ariane4_free_sign(t159);
+    const ariane4_free_real_t t160 = ariane4_free_sign(t159); /* joint j2: coulomb_friction */
     out[96] = ARIANE4_FREE_C(83.33333333333333) * t160;
+    /* joint j2: drive */
     const ariane4_free_real_t t161 = ARIANE4_FREE_C(2656.3065671641784) * t19
         + ARIANE4_FREE_C(-104.12987373940295) * (t61 * t61) * (t21 * t21);
     out[97] = ARIANE4_FREE_C(83.33333333333333) * (t62 * ddq[1] + t61 * t161 * t31);
-    const ariane4_free_real_t t162 = ARIANE4_FREE_C(-1.0) / t58;
+    const ariane4_free_real_t t162 = ARIANE4_FREE_C(-1.0) / t58; /* joint j3: drive */
     const ariane4_free_real_t t163 = t59 * (ARIANE4_FREE_C(7124.375926654358) * t162);
     const ariane4_free_real_t t164 = t163 * dq[2];
     out[150] = ARIANE4_FREE_C(-333.3333333333333) * t164;
-    const ariane4_free_real_t t165 = ariane4_free_sign(t164);
+    const ariane4_free_real_t t165 = ariane4_free_sign(t164); /* joint j3: coulomb_friction */
     out[151] = ARIANE4_FREE_C(-333.3333333333333) * t165;
+    /* joint j3: drive */
     const ariane4_free_real_t t166 = ARIANE4_FREE_C(-7124.375926654358) * t57
         + ARIANE4_FREE_C(-188.12627071923498) * (t162 * t162) * (t59 * t59);
     const ariane4_free_real_t t167 = ARIANE4_FREE_C(-333.3333333333333) * (t163 * ddq[2]
         + t162 * t166 * (dq[2] * dq[2]));
     out[152] = t167;
     out[205] = ARIANE4_FREE_C(2.0e3) * dq[3];
-    const ariane4_free_real_t t168 = ariane4_free_sign(dq[3]);
+    const ariane4_free_real_t t168 = ariane4_free_sign(dq[3]); /* joint j4: coulomb_friction */
     out[206] = ARIANE4_FREE_C(20.0) * t168;
     out[207] = ARIANE4_FREE_C(2.0e3) * ddq[3];
     /* always zero */

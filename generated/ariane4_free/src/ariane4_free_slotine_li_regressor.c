@@ -6,7 +6,7 @@
  * Arm ariane4_free, description 79391f27012d8ce4.
  * SPDX-License-Identifier: 0BSD
  *
- * Operations: 412 (277 mul, 132 add, 3 neg), 6 div, 3 sqrt, 8 trig, 4 other.
+ * Operations: 412 (277 mul, 132 add, 3 neg), 6 div, 3 sqrt, 8 trig, 4 other calls (sign, select and the like).
  *
  * @param[in]   q      [4]    [rad]                          joint coordinates; norm at most 10000
  * @param[in]   dq     [4]    [rad/s]                        joint velocities; norm at most 100000
@@ -31,18 +31,18 @@
  */
 #include "ariane4_free_private.h"
 
-#if ARIANE4_FREE_GENERATION != 0x261051E4UL
+#if ARIANE4_FREE_GENERATION != 0x6EBE5535UL
 #error "ariane4_free.h and ariane4_free_slotine_li_regressor.c are of different generations: generate the arm again"
 #endif
 
-int ariane4_free_slotine_li_regressor(
+ariane4_free_status_t ariane4_free_slotine_li_regressor(
     const ariane4_free_real_t q[ARIANE4_FREE_N_JOINTS],
     const ariane4_free_real_t dq[ARIANE4_FREE_N_JOINTS],
     const ariane4_free_real_t dq_r[ARIANE4_FREE_N_JOINTS],
     const ariane4_free_real_t ddq_r[ARIANE4_FREE_N_JOINTS],
     ariane4_free_real_t out[ARIANE4_FREE_N_JOINTS * ARIANE4_FREE_N_PARAMETERS])
 {
-    int status = ARIANE4_FREE_STATUS_OK;
+    ariane4_free_status_t status = ARIANE4_FREE_STATUS_OK;
 
     if (!ariane4_free_within_joints(q, ARIANE4_FREE_C(1.0e8))
         || !ariane4_free_within_joints(dq, ARIANE4_FREE_C(1.0e10))
@@ -68,6 +68,7 @@ int ariane4_free_slotine_li_regressor(
     ARIANE4_FREE_SINCOS(q[2], &t38, &t37);
     ariane4_free_real_t t89, t90;
     ARIANE4_FREE_SINCOS(q[3], &t89, &t90);
+    /* joint j1: drive */
     const ariane4_free_real_t t2 = ARIANE4_FREE_C(0.28217402066925895) * t0
         + ARIANE4_FREE_C(0.9593632378089879) * t1;
     const ariane4_free_real_t t3 = ARIANE4_FREE_SQRT(ARIANE4_FREE_C(0.037468) * t2
@@ -76,18 +77,19 @@ int ariane4_free_slotine_li_regressor(
         + ARIANE4_FREE_C(0.9593632378089879) * t0;
     const ariane4_free_real_t t5 = ARIANE4_FREE_C(-0.06434139546481742) * t3 / t4;
     out[0] = -(t5 * ddq_r[0]);
-    const ariane4_free_real_t t7 = t6 * t5;
-    const ariane4_free_real_t t9 = t8 * dq[0];
+    const ariane4_free_real_t t7 = t6 * t5; /* link j2: velocities by those of the joints */
+    const ariane4_free_real_t t9 = t8 * dq[0]; /* link j2: motion */
     const ariane4_free_real_t t10 = t8 * dq_r[0];
     const ariane4_free_real_t t11 = ARIANE4_FREE_C(-0.5) * (t9 * dq_r[1] + dq[1] * t10);
     const ariane4_free_real_t t12 = t6 * ddq_r[0];
     const ariane4_free_real_t t13 = t11 - t12;
-    const ariane4_free_real_t t14 = t8 * t5;
-    const ariane4_free_real_t t15 = t6 * dq[0];
+    const ariane4_free_real_t t14 = t8 * t5; /* link j2: velocities by those of the joints */
+    const ariane4_free_real_t t15 = t6 * dq[0]; /* link j2: motion */
     const ariane4_free_real_t t16 = t6 * dq_r[0];
     const ariane4_free_real_t t17 = ARIANE4_FREE_C(0.5) * (t15 * dq_r[1] + dq[1] * t16);
-    const ariane4_free_real_t t18 = t14 * t17;
+    const ariane4_free_real_t t18 = t14 * t17; /* link j2: columns */
     out[1] = t7 * t13 - t18;
+    /* joint j2: drive */
     const ariane4_free_real_t t19 = ARIANE4_FREE_C(0.8305958991958126) * t8
         - ARIANE4_FREE_C(0.5568756164881881) * t6;
     const ariane4_free_real_t t20 = ARIANE4_FREE_SQRT(ARIANE4_FREE_C(-0.078402) * t19
@@ -95,36 +97,37 @@ int ariane4_free_slotine_li_regressor(
     const ariane4_free_real_t t21 = ARIANE4_FREE_C(0.8305958991958126) * t6
         + ARIANE4_FREE_C(0.5568756164881881) * t8;
     const ariane4_free_real_t t22 = ARIANE4_FREE_C(0.03137188092799786) * t20 / t21;
-    const ariane4_free_real_t t23 = ARIANE4_FREE_C(-0.5) * (t15 * t10 + t9 * t16);
+    const ariane4_free_real_t t23 = ARIANE4_FREE_C(-0.5) * (t15 * t10 + t9 * t16); /* link j2: motion */
     out[35] = t22 * t23;
-    const ariane4_free_real_t t24 = t11 + t13;
-    const ariane4_free_real_t t25 = t8 * ddq_r[0];
-    const ariane4_free_real_t t26 = t17 + (t17 - t25);
+    const ariane4_free_real_t t24 = t11 + t13; /* link j3: motion */
+    const ariane4_free_real_t t25 = t8 * ddq_r[0]; /* link j2: motion */
+    const ariane4_free_real_t t26 = t17 + (t17 - t25); /* link j3: motion */
     out[2] = t14 * t24 + t7 * t26;
-    const ariane4_free_real_t t27 = t15 * t16;
+    const ariane4_free_real_t t27 = t15 * t16; /* link j2: motion */
     const ariane4_free_real_t t28 = t9 * t10;
     out[36] = t22 * (t27 - t28);
-    const ariane4_free_real_t t29 = t23 - ddq_r[1];
-    const ariane4_free_real_t t30 = dq[1] * dq_r[1];
+    const ariane4_free_real_t t29 = t23 - ddq_r[1]; /* link j3: motion */
+    const ariane4_free_real_t t30 = dq[1] * dq_r[1]; /* link j2: motion */
     out[3] = t7 * t29 + t14 * (t27 - t30);
     out[37] = t22 * t12;
     out[4] = t7 * (t30 - t28) - t14 * (ddq_r[1] + t23);
     out[38] = t22 * t25;
     out[5] = t18 + t7 * t11;
     out[39] = t22 * ddq_r[1];
+    /* link j2: velocities by those of the joints */
     const ariane4_free_real_t t31 = ARIANE4_FREE_C(0.116) * t5;
-    const ariane4_free_real_t t32 = ARIANE4_FREE_C(0.116) * ddq_r[0];
+    const ariane4_free_real_t t32 = ARIANE4_FREE_C(0.116) * ddq_r[0]; /* link j2: motion */
     out[6] = t31 * t26 - t14 * t32;
-    const ariane4_free_real_t t33 = dq[0] * dq_r[0];
-    const ariane4_free_real_t t34 = ARIANE4_FREE_C(0.116) * t33;
+    const ariane4_free_real_t t33 = dq[0] * dq_r[0]; /* link j1: motion */
+    const ariane4_free_real_t t34 = ARIANE4_FREE_C(0.116) * t33; /* link j2: motion */
     const ariane4_free_real_t t35 = t6 * t34 - ARIANE4_FREE_C(-9.81) * t8;
     out[40] = t22 * t35;
     out[7] = t7 * t32 - t31 * t24;
     const ariane4_free_real_t t36 = ARIANE4_FREE_C(-9.81) * t6 + t8 * t34;
     out[41] = t22 * t36;
-    const ariane4_free_real_t t39 = t6 * t37 + t8 * t38;
-    const ariane4_free_real_t t40 = t5 * t39;
-    const ariane4_free_real_t t41 = t8 * t37 - t6 * t38;
+    const ariane4_free_real_t t39 = t6 * t37 + t8 * t38; /* link j3: motion */
+    const ariane4_free_real_t t40 = t5 * t39; /* link j3: velocities by those of the joints */
+    const ariane4_free_real_t t41 = t8 * t37 - t6 * t38; /* link j3: motion */
     const ariane4_free_real_t t42 = dq[0] * t41;
     const ariane4_free_real_t t43 = dq_r[1] + dq_r[2];
     const ariane4_free_real_t t44 = t41 * dq_r[0];
@@ -132,15 +135,16 @@ int ariane4_free_slotine_li_regressor(
     const ariane4_free_real_t t46 = ARIANE4_FREE_C(0.5) * (t42 * t43 + t45 * t44);
     const ariane4_free_real_t t47 = t39 * ddq_r[0];
     const ariane4_free_real_t t48 = t47 + t46;
-    const ariane4_free_real_t t49 = t5 * t41;
-    const ariane4_free_real_t t50 = dq[0] * t39;
+    const ariane4_free_real_t t49 = t5 * t41; /* link j3: velocities by those of the joints */
+    const ariane4_free_real_t t50 = dq[0] * t39; /* link j3: motion */
     const ariane4_free_real_t t51 = t39 * dq_r[0];
     const ariane4_free_real_t t52 = ARIANE4_FREE_C(0.5) * (t50 * t43 + t45 * t51);
-    const ariane4_free_real_t t53 = t49 * t52;
+    const ariane4_free_real_t t53 = t49 * t52; /* link j3: columns */
     out[8] = -(t40 * t48 + t53);
-    const ariane4_free_real_t t54 = ARIANE4_FREE_C(-0.5) * (t50 * t44 + t42 * t51);
-    const ariane4_free_real_t t55 = t22 * t54;
+    const ariane4_free_real_t t54 = ARIANE4_FREE_C(-0.5) * (t50 * t44 + t42 * t51); /* link j3: motion */
+    const ariane4_free_real_t t55 = t22 * t54; /* link j3: columns */
     out[42] = t55;
+    /* joint j3: drive */
     const ariane4_free_real_t t56 = ARIANE4_FREE_C(0.06366143813161289) * t37
         - ARIANE4_FREE_C(0.9979715533496006) * t38;
     const ariane4_free_real_t t57 = ARIANE4_FREE_SQRT(ARIANE4_FREE_C(0.052812) * t56
@@ -148,92 +152,94 @@ int ariane4_free_slotine_li_regressor(
     const ariane4_free_real_t t58 = ARIANE4_FREE_C(-0.06366143813161289) * t38
         + ARIANE4_FREE_C(-0.9979715533496006) * t37;
     const ariane4_free_real_t t59 = ARIANE4_FREE_C(0.046787723832235825) * t57 / t58;
-    const ariane4_free_real_t t60 = ARIANE4_FREE_C(1.0) / t20;
+    const ariane4_free_real_t t60 = ARIANE4_FREE_C(1.0) / t20; /* joint j2: drive */
     const ariane4_free_real_t t61 = t21 * (ARIANE4_FREE_C(2656.3065671641784) * t60);
     const ariane4_free_real_t t62 = t59 * (ARIANE4_FREE_C(0.012) * t61);
     out[76] = t62 * t55;
-    const ariane4_free_real_t t63 = t46 + t48;
-    const ariane4_free_real_t t64 = t41 * ddq_r[0];
+    const ariane4_free_real_t t63 = t46 + t48; /* link j4: motion */
+    const ariane4_free_real_t t64 = t41 * ddq_r[0]; /* link j3: motion */
     const ariane4_free_real_t t65 = t52 - t64;
-    const ariane4_free_real_t t66 = t52 + t65;
+    const ariane4_free_real_t t66 = t52 + t65; /* link j4: motion */
     out[9] = t40 * t66 - t49 * t63;
-    const ariane4_free_real_t t67 = t50 * t51;
+    const ariane4_free_real_t t67 = t50 * t51; /* link j3: motion */
     const ariane4_free_real_t t68 = t42 * t44;
-    const ariane4_free_real_t t69 = t22 * (t67 - t68);
+    const ariane4_free_real_t t69 = t22 * (t67 - t68); /* link j3: columns */
     out[43] = t69;
     out[77] = t62 * t69;
-    const ariane4_free_real_t t70 = ddq_r[1] + ddq_r[2];
-    const ariane4_free_real_t t71 = t54 - t70;
-    const ariane4_free_real_t t72 = t45 * t43;
+    const ariane4_free_real_t t70 = ddq_r[1] + ddq_r[2]; /* link j3: motion */
+    const ariane4_free_real_t t71 = t54 - t70; /* link j4: motion */
+    const ariane4_free_real_t t72 = t45 * t43; /* link j3: motion */
     out[10] = t40 * t71 - t49 * (t72 - t67);
-    const ariane4_free_real_t t73 = t22 * t47;
+    const ariane4_free_real_t t73 = t22 * t47; /* link j3: columns */
     out[44] = t73;
     out[78] = t62 * t73;
-    const ariane4_free_real_t t74 = t70 + t54;
+    const ariane4_free_real_t t74 = t70 + t54; /* link j4: motion */
     out[11] = t40 * (t72 - t68) - t49 * t74;
-    const ariane4_free_real_t t75 = t22 * t64;
+    const ariane4_free_real_t t75 = t22 * t64; /* link j3: columns */
     out[45] = t75;
     out[79] = t62 * t75;
     out[12] = t53 - t40 * t46;
     const ariane4_free_real_t t76 = t22 * t70;
     out[46] = t76;
     out[80] = t62 * t76;
+    /* link j3: velocities by those of the joints */
     const ariane4_free_real_t t77 = t31 + ARIANE4_FREE_C(0.443) * t14;
-    const ariane4_free_real_t t78 = t32 + ARIANE4_FREE_C(-0.443) * t26;
+    const ariane4_free_real_t t78 = t32 + ARIANE4_FREE_C(-0.443) * t26; /* link j3: motion */
     out[13] = t77 * t66 - t49 * t78;
+    /* link j3: velocities by those of the joints */
     const ariane4_free_real_t t79 = ARIANE4_FREE_C(-0.443) * t22;
     const ariane4_free_real_t t80 = t38 * t79;
-    const ariane4_free_real_t t81 = t68 + t72;
-    const ariane4_free_real_t t82 = t37 * t79;
-    const ariane4_free_real_t t83 = t36 + ARIANE4_FREE_C(0.443) * (t28 + t30);
+    const ariane4_free_real_t t81 = t68 + t72; /* link j4: motion */
+    const ariane4_free_real_t t82 = t37 * t79; /* link j3: velocities by those of the joints */
+    const ariane4_free_real_t t83 = t36 + ARIANE4_FREE_C(0.443) * (t28 + t30); /* link j3: motion */
     const ariane4_free_real_t t84 = ARIANE4_FREE_C(0.443) * t29 - t35;
     const ariane4_free_real_t t85 = t38 * t83 - t37 * t84;
-    const ariane4_free_real_t t86 = t22 * t85;
+    const ariane4_free_real_t t86 = t22 * t85; /* link j3: columns */
     out[47] = t80 * t81 + t82 * t71 + t86;
     out[81] = t62 * t86;
     out[14] = t77 * t63 + t40 * t78;
-    const ariane4_free_real_t t87 = t37 * t83 + t38 * t84;
-    const ariane4_free_real_t t88 = t22 * t87;
+    const ariane4_free_real_t t87 = t37 * t83 + t38 * t84; /* link j3: motion */
+    const ariane4_free_real_t t88 = t22 * t87; /* link j3: columns */
     out[48] = t80 * t74 + t82 * (t67 + t72) + t88;
     out[82] = t62 * t88;
-    const ariane4_free_real_t t91 = t90 * t63 - t89 * t74;
+    const ariane4_free_real_t t91 = t90 * t63 - t89 * t74; /* link j4: motion */
     const ariane4_free_real_t t92 = t90 * t45 + t89 * t50;
     const ariane4_free_real_t t93 = dq_r[3] + t44;
     const ariane4_free_real_t t94 = dq[3] + t42;
     const ariane4_free_real_t t95 = t89 * t51 + t90 * t43;
     const ariane4_free_real_t t96 = ARIANE4_FREE_C(0.5) * (t92 * t93 + t94 * t95);
     const ariane4_free_real_t t97 = t96 - t91;
-    const ariane4_free_real_t t98 = t90 * t40;
-    const ariane4_free_real_t t99 = t90 * t50 - t89 * t45;
+    const ariane4_free_real_t t98 = t90 * t40; /* link j4: velocities by those of the joints */
+    const ariane4_free_real_t t99 = t90 * t50 - t89 * t45; /* link j4: motion */
     const ariane4_free_real_t t100 = t90 * t51 - t89 * t43;
     const ariane4_free_real_t t101 = ARIANE4_FREE_C(0.5) * (t99 * t93 + t94 * t100);
-    const ariane4_free_real_t t102 = t89 * t40;
-    const ariane4_free_real_t t103 = t102 * t101;
-    const ariane4_free_real_t t104 = t99 * t95 + t92 * t100;
+    const ariane4_free_real_t t102 = t89 * t40; /* link j4: velocities by those of the joints */
+    const ariane4_free_real_t t103 = t102 * t101; /* link j4: columns */
+    const ariane4_free_real_t t104 = t99 * t95 + t92 * t100; /* link j4: motion */
     const ariane4_free_real_t t105 = ARIANE4_FREE_C(0.5) * t104;
     out[15] = t98 * t97 + (t103 - t49 * t105);
-    const ariane4_free_real_t t106 = t89 * t22;
+    const ariane4_free_real_t t106 = t89 * t22; /* link j4: velocities by those of the joints */
     const ariane4_free_real_t t107 = t90 * t22;
-    const ariane4_free_real_t t108 = t107 * t101;
+    const ariane4_free_real_t t108 = t107 * t101; /* link j4: columns */
     const ariane4_free_real_t t109 = t106 * t97 - t108;
     out[49] = t109;
     out[83] = t62 * t109;
     out[117] = ARIANE4_FREE_C(0.1) * t104;
     const ariane4_free_real_t t110 = t96 + t97;
-    const ariane4_free_real_t t111 = t90 * t74 + t89 * t63;
-    const ariane4_free_real_t t112 = t101 + (t111 + t101);
-    const ariane4_free_real_t t113 = t99 * t100;
+    const ariane4_free_real_t t111 = t90 * t74 + t89 * t63; /* link j4: motion */
+    const ariane4_free_real_t t112 = t101 + (t111 + t101); /* link j4: columns */
+    const ariane4_free_real_t t113 = t99 * t100; /* link j4: motion */
     const ariane4_free_real_t t114 = t92 * t95;
-    const ariane4_free_real_t t115 = t113 - t114;
+    const ariane4_free_real_t t115 = t113 - t114; /* link j4: columns */
     out[16] = t98 * t112 - t102 * t110 - t49 * t115;
     const ariane4_free_real_t t116 = t107 * t110 + t106 * t112;
     out[50] = t116;
     out[84] = t62 * t116;
     out[118] = ARIANE4_FREE_C(0.2) * t115;
-    const ariane4_free_real_t t117 = ddq_r[3] - t65;
-    const ariane4_free_real_t t118 = t105 - t117;
-    const ariane4_free_real_t t119 = t94 * t93;
-    const ariane4_free_real_t t120 = t119 - t113;
+    const ariane4_free_real_t t117 = ddq_r[3] - t65; /* link j4: motion */
+    const ariane4_free_real_t t118 = t105 - t117; /* link j4: columns */
+    const ariane4_free_real_t t119 = t94 * t93; /* link j4: motion */
+    const ariane4_free_real_t t120 = t119 - t113; /* link j4: columns */
     out[17] = t98 * t118 - t49 * t91 + t102 * t120;
     const ariane4_free_real_t t121 = t106 * t118 - t107 * t120;
     out[51] = t121;
@@ -251,27 +257,30 @@ int ariane4_free_slotine_li_regressor(
     out[53] = t125;
     out[87] = t62 * t125;
     out[121] = ARIANE4_FREE_C(0.2) * t117;
+    /* link j4: velocities by those of the joints */
     const ariane4_free_real_t t126 = t77 + ARIANE4_FREE_C(-0.1) * t49;
     const ariane4_free_real_t t127 = t89 * t126;
-    const ariane4_free_real_t t128 = t114 + t119;
-    const ariane4_free_real_t t129 = t90 * t126;
-    const ariane4_free_real_t t130 = ARIANE4_FREE_C(-0.1) * t71 - t85;
+    const ariane4_free_real_t t128 = t114 + t119; /* link j4: columns */
+    const ariane4_free_real_t t129 = t90 * t126; /* link j4: velocities by those of the joints */
+    const ariane4_free_real_t t130 = ARIANE4_FREE_C(-0.1) * t71 - t85; /* link j4: motion */
     const ariane4_free_real_t t131 = t87 + ARIANE4_FREE_C(-0.1) * t81;
     const ariane4_free_real_t t132 = t78 + ARIANE4_FREE_C(0.1) * t66;
     const ariane4_free_real_t t133 = t89 * t131 + t90 * t132;
+    /* link j4: columns */
     const ariane4_free_real_t t134 = t127 * t128 + t129 * t118 + (t102 * t130 - t49 * t133);
     out[20] = t134;
-    const ariane4_free_real_t t135 = t90 * t80;
+    const ariane4_free_real_t t135 = t90 * t80; /* link j4: velocities by those of the joints */
     const ariane4_free_real_t t136 = t89 * t80;
     const ariane4_free_real_t t137 = ARIANE4_FREE_C(0.1) * t22;
     const ariane4_free_real_t t138 = t82 + t137;
-    const ariane4_free_real_t t139 = t107 * t130;
+    const ariane4_free_real_t t139 = t107 * t130; /* link j4: columns */
     const ariane4_free_real_t t140 = t135 * t128 - t136 * t118 - t138 * t112 - t139;
     out[54] = t140;
     out[88] = -(t62 * (t139 + t137 * t112));
     out[122] = ARIANE4_FREE_C(0.2) * t133;
     const ariane4_free_real_t t141 = t113 + t119;
-    const ariane4_free_real_t t142 = t90 * t131 - t89 * t132;
+    const ariane4_free_real_t t142 = t90 * t131 - t89 * t132; /* link j4: motion */
+    /* link j4: columns */
     const ariane4_free_real_t t143 = t127 * t122 + t129 * t141 + (t98 * t130 - t49 * t142);
     out[21] = t143;
     const ariane4_free_real_t t144 = t106 * t130;
@@ -279,35 +288,38 @@ int ariane4_free_slotine_li_regressor(
     out[55] = t145;
     out[89] = t62 * (t144 + t137 * t110);
     out[123] = ARIANE4_FREE_C(0.2) * t142;
-    const ariane4_free_real_t t146 = ARIANE4_FREE_C(-1.0) / t3;
+    const ariane4_free_real_t t146 = ARIANE4_FREE_C(-1.0) / t3; /* joint j1: drive */
     const ariane4_free_real_t t147 = t4 * (ARIANE4_FREE_C(3885.523436256565) * t146);
     const ariane4_free_real_t t148 = t147 * dq[0];
     out[22] = ARIANE4_FREE_C(-250.0) * t148;
-    const ariane4_free_real_t t149 = ariane4_free_sign(t148);
+    const ariane4_free_real_t t149 = ariane4_free_sign(t148); /* joint j1: coulomb_friction */
     out[23] = ARIANE4_FREE_C(-250.0) * t149;
+    /* joint j1: drive */
     const ariane4_free_real_t t150 = ARIANE4_FREE_C(-3885.523436256565) * t2
         + ARIANE4_FREE_C(-72.7913960548305) * (t146 * t146) * (t4 * t4);
     out[24] = ARIANE4_FREE_C(-250.0) * (t147 * ddq_r[0] + t146 * t150 * t33);
     const ariane4_free_real_t t151 = t61 * dq[1];
     out[59] = ARIANE4_FREE_C(83.33333333333333) * t151;
-    const ariane4_free_real_t t152 = ariane4_free_sign(t151);
+    const ariane4_free_real_t t152 = ariane4_free_sign(t151); /* joint j2: coulomb_friction */
     out[60] = ARIANE4_FREE_C(83.33333333333333) * t152;
+    /* joint j2: drive */
     const ariane4_free_real_t t153 = ARIANE4_FREE_C(2656.3065671641784) * t19
         + ARIANE4_FREE_C(-104.12987373940295) * (t60 * t60) * (t21 * t21);
     out[61] = ARIANE4_FREE_C(83.33333333333333) * (t61 * ddq_r[1] + t60 * t153 * t30);
-    const ariane4_free_real_t t154 = ARIANE4_FREE_C(-1.0) / t57;
+    const ariane4_free_real_t t154 = ARIANE4_FREE_C(-1.0) / t57; /* joint j3: drive */
     const ariane4_free_real_t t155 = t58 * (ARIANE4_FREE_C(7124.375926654358) * t154);
     const ariane4_free_real_t t156 = t155 * dq[2];
     out[96] = ARIANE4_FREE_C(-333.3333333333333) * t156;
-    const ariane4_free_real_t t157 = ariane4_free_sign(t156);
+    const ariane4_free_real_t t157 = ariane4_free_sign(t156); /* joint j3: coulomb_friction */
     out[97] = ARIANE4_FREE_C(-333.3333333333333) * t157;
+    /* joint j3: drive */
     const ariane4_free_real_t t158 = ARIANE4_FREE_C(-7124.375926654358) * t56
         + ARIANE4_FREE_C(-188.12627071923498) * (t154 * t154) * (t58 * t58);
     const ariane4_free_real_t t159 = ARIANE4_FREE_C(-333.3333333333333) * (t155 * ddq_r[2]
         + t154 * t158 * (dq[2] * dq_r[2]));
     out[98] = t159;
     out[133] = ARIANE4_FREE_C(2.0e3) * dq[3];
-    const ariane4_free_real_t t160 = ariane4_free_sign(dq[3]);
+    const ariane4_free_real_t t160 = ariane4_free_sign(dq[3]); /* joint j4: coulomb_friction */
     out[134] = ARIANE4_FREE_C(20.0) * t160;
     out[135] = ARIANE4_FREE_C(2.0e3) * ddq_r[3];
     /* always zero */

@@ -10,11 +10,12 @@
  * these are assumed, 100 mm about the length at a right inner angle, and so are motor ranges, offsets
  * and torque constants.
  *
- * Units are SI with radians. Gravity in the base frame: 0, 0, -9.81 m/s^2.
+ * Units are SI with radians; `unit` is that of a motor coordinate in the description, increments say. Gravity in the base frame: 0, 0, -9.81 m/s^2.
  *
  * Every function returns ARIANE6_STATUS_OK, or the sum of the ARIANE6_STATUS_ bits that apply; all of
  * its outputs are then zero. Inputs are checked by their Euclidean norm, so one that is not finite is
- * found too (not with -ffast-math). Outputs may not overlap inputs. Matrices are row-major.
+ * found too (not with -ffast-math). Outputs may not overlap inputs. Matrices are row-major. In the sources a
+ * remark behind a value says which link or joint it belongs to, and those after it up to the next remark.
  *
  * Coordinates:
  *
@@ -86,7 +87,7 @@
 #define ARIANE6_H
 
 /** Number of this generation: header and sources of different ones do not compile together. */
-#define ARIANE6_GENERATION 0xBA206C14UL
+#define ARIANE6_GENERATION 0x13CD28B3UL
 
 /** SHA-256 of the description that this is the model of, then after a blank the description's version, if any. */
 #define ARIANE6_MODEL "ac2a59ce556c2f1c818a485f9d0c6d4da754ef25a07a354dfa818a9b37990eec"
@@ -119,6 +120,7 @@
 #define ariane6_mass_matrix ariane6_mass_matrix_float
 #define ariane6_forward_dynamics ariane6_forward_dynamics_float
 #define ariane6_energy ariane6_energy_float
+#define ariane6_joint_effort ariane6_joint_effort_float
 #define ariane6_regressor ariane6_regressor_float
 #define ariane6_regressor_standard ariane6_regressor_standard_float
 #define ariane6_regressor_packed ariane6_regressor_packed_float
@@ -129,6 +131,7 @@
 #define ariane6_mass_matrix_standard ariane6_mass_matrix_standard_float
 #define ariane6_forward_dynamics_standard ariane6_forward_dynamics_standard_float
 #define ariane6_energy_standard ariane6_energy_standard_float
+#define ariane6_joint_effort_standard ariane6_joint_effort_standard_float
 #define ariane6_forward_kinematics ariane6_forward_kinematics_float
 #define ariane6_jacobian ariane6_jacobian_float
 #define ariane6_motor_from_joint ariane6_motor_from_joint_float
@@ -138,10 +141,14 @@
 #define ariane6_forward_dynamics_derivatives ariane6_forward_dynamics_derivatives_float
 #define ariane6_inverse_dynamics_derivatives_standard ariane6_inverse_dynamics_derivatives_standard_float
 #define ariane6_forward_dynamics_derivatives_standard ariane6_forward_dynamics_derivatives_standard_float
+#define ariane6_momentum_observer_step ariane6_momentum_observer_step_float
+#define ariane6_momentum_observer_step_standard ariane6_momentum_observer_step_standard_float
 #define ariane6_check_parameters ariane6_check_parameters_float
 #define ariane6_check_parameters_standard ariane6_check_parameters_standard_float
 #define ariane6_model ariane6_model_float
 #define ariane6_sincos ariane6_sincos_float
+#define ariane6_onto_strokes ariane6_onto_strokes_float
+#define ariane6_motors_onto_strokes ariane6_motors_onto_strokes_float
 #define ariane6_regressor_rows ariane6_regressor_rows_float
 #define ariane6_regressor_columns ariane6_regressor_columns_float
 #endif
@@ -157,11 +164,16 @@ typedef ARIANE6_REAL ariane6_real_t;
 #define ARIANE6_N_PARAMETERS           54   /**< base parameters */
 #define ARIANE6_N_STANDARD_PARAMETERS  78   /**< standard parameters */
 #define ARIANE6_N_PACKED               159  /**< structural non-zeros of the regressor */
+#define ARIANE6_N_OBSERVER_STATES      6    /**< state of the observer: the momentum that the model expects
+                                            */
 
-#define ARIANE6_STATUS_OK     0
-#define ARIANE6_STATUS_STROKE 1 /**< a lever would leave its stroke */
-#define ARIANE6_STATUS_PIVOT  2 /**< a pivot of the mass matrix vanishes, or the result is beyond 1e15 */
-#define ARIANE6_STATUS_INPUT  4 /**< an input is not finite or beyond its bound */
+/** ARIANE6_STATUS_OK or bits of the others. */
+typedef unsigned int ariane6_status_t;
+
+#define ARIANE6_STATUS_OK     0U
+#define ARIANE6_STATUS_STROKE 1U /**< a lever would leave its stroke */
+#define ARIANE6_STATUS_PIVOT  2U /**< a pivot of the mass matrix vanishes, or the result is beyond 1e15 */
+#define ARIANE6_STATUS_INPUT  4U /**< an input is not finite or beyond its bound */
 
 /** Indices of the base parameters. */
 enum {
@@ -321,7 +333,7 @@ const char *ariane6_model(void);
  *
  * @return ARIANE6_STATUS_OK or ARIANE6_STATUS_INPUT
  */
-int ariane6_check_parameters(const ariane6_real_t parameters[ARIANE6_N_PARAMETERS]);
+ariane6_status_t ariane6_check_parameters(const ariane6_real_t parameters[ARIANE6_N_PARAMETERS]);
 
 /**
  * Whether standard parameters can be used: finite, and their norm within its bound. Every function that takes them checks
@@ -329,7 +341,7 @@ int ariane6_check_parameters(const ariane6_real_t parameters[ARIANE6_N_PARAMETER
  *
  * @return ARIANE6_STATUS_OK or ARIANE6_STATUS_INPUT
  */
-int ariane6_check_parameters_standard(const ariane6_real_t parameters[ARIANE6_N_STANDARD_PARAMETERS]);
+ariane6_status_t ariane6_check_parameters_standard(const ariane6_real_t parameters[ARIANE6_N_STANDARD_PARAMETERS]);
 
 /**
  * Inputs that give the accelerations ddq in the state q, dq; base parameters.
@@ -341,9 +353,9 @@ int ariane6_check_parameters_standard(const ariane6_real_t parameters[ARIANE6_N_
  * @param[out]  out         [6]   [A]        inputs: motor currents, efforts where undriven
  * @return ARIANE6_STATUS_OK or status bits
  *
- * Operations: 618 (350 mul, 268 add, 0 neg), 8 div, 4 sqrt, 12 trig, 6 other.
+ * Operations: 618 (350 mul, 268 add, 0 neg), 8 div, 4 sqrt, 12 trig, 6 other calls (sign, select and the like).
  */
-int ariane6_inverse_dynamics(
+ariane6_status_t ariane6_inverse_dynamics(
     const ariane6_real_t q[ARIANE6_N_JOINTS],
     const ariane6_real_t dq[ARIANE6_N_JOINTS],
     const ariane6_real_t ddq[ARIANE6_N_JOINTS],
@@ -360,7 +372,7 @@ int ariane6_inverse_dynamics(
  *
  * Operations: 108 (72 mul, 36 add, 0 neg), 4 div, 4 sqrt, 12 trig.
  */
-int ariane6_gravity(
+ariane6_status_t ariane6_gravity(
     const ariane6_real_t q[ARIANE6_N_JOINTS],
     const ariane6_real_t parameters[ARIANE6_N_PARAMETERS],
     ariane6_real_t out[ARIANE6_N_JOINTS]);
@@ -374,9 +386,9 @@ int ariane6_gravity(
  * @param[out]  out         [6]   [A]      inputs: motor currents, efforts where undriven
  * @return ARIANE6_STATUS_OK or status bits
  *
- * Operations: 566 (330 mul, 236 add, 0 neg), 8 div, 4 sqrt, 12 trig, 6 other.
+ * Operations: 566 (330 mul, 236 add, 0 neg), 8 div, 4 sqrt, 12 trig, 6 other calls (sign, select and the like).
  */
-int ariane6_bias(
+ariane6_status_t ariane6_bias(
     const ariane6_real_t q[ARIANE6_N_JOINTS],
     const ariane6_real_t dq[ARIANE6_N_JOINTS],
     const ariane6_real_t parameters[ARIANE6_N_PARAMETERS],
@@ -392,7 +404,7 @@ int ariane6_bias(
  *
  * Operations: 300 (164 mul, 134 add, 2 neg), 4 div, 4 sqrt, 12 trig.
  */
-int ariane6_mass_matrix(
+ariane6_status_t ariane6_mass_matrix(
     const ariane6_real_t q[ARIANE6_N_JOINTS],
     const ariane6_real_t parameters[ARIANE6_N_PARAMETERS],
     ariane6_real_t out[ARIANE6_N_JOINTS * ARIANE6_N_JOINTS]);
@@ -408,9 +420,9 @@ int ariane6_mass_matrix(
  * @param[out]  out         [6]   [rad/s^2]  joint accelerations
  * @return ARIANE6_STATUS_OK or status bits
  *
- * Operations: 1003 (565 mul, 438 add, 0 neg), 10 div, 4 sqrt, 12 trig, 6 other.
+ * Operations: 1003 (565 mul, 438 add, 0 neg), 10 div, 4 sqrt, 12 trig, 6 other calls (sign, select and the like).
  */
-int ariane6_forward_dynamics(
+ariane6_status_t ariane6_forward_dynamics(
     const ariane6_real_t q[ARIANE6_N_JOINTS],
     const ariane6_real_t dq[ARIANE6_N_JOINTS],
     const ariane6_real_t input[ARIANE6_N_JOINTS],
@@ -429,12 +441,32 @@ int ariane6_forward_dynamics(
  *
  * Operations: 314 (204 mul, 110 add, 0 neg), 4 div, 4 sqrt, 12 trig.
  */
-int ariane6_energy(
+ariane6_status_t ariane6_energy(
     const ariane6_real_t q[ARIANE6_N_JOINTS],
     const ariane6_real_t dq[ARIANE6_N_JOINTS],
     const ariane6_real_t parameters[ARIANE6_N_PARAMETERS],
     ariane6_real_t kinetic[1],
     ariane6_real_t potential[1]);
+
+/**
+ * Efforts of the drives at the joints that give the accelerations ddq in the state q, dq; base
+ * parameters.
+ *
+ * @param[in]   q           [6]   [rad]      joint coordinates; norm at most 10000
+ * @param[in]   dq          [6]   [rad/s]    joint velocities; norm at most 100000
+ * @param[in]   ddq         [6]   [rad/s^2]  joint accelerations; norm at most 1e+08
+ * @param[in]   parameters  [54]             base parameters; norm at most 1e+09
+ * @param[out]  out         [6]   [N m]      efforts at the joints
+ * @return ARIANE6_STATUS_OK or status bits
+ *
+ * Operations: 608 (340 mul, 268 add, 0 neg), 4 div, 4 sqrt, 12 trig, 6 other calls (sign, select and the like).
+ */
+ariane6_status_t ariane6_joint_effort(
+    const ariane6_real_t q[ARIANE6_N_JOINTS],
+    const ariane6_real_t dq[ARIANE6_N_JOINTS],
+    const ariane6_real_t ddq[ARIANE6_N_JOINTS],
+    const ariane6_real_t parameters[ARIANE6_N_PARAMETERS],
+    ariane6_real_t out[ARIANE6_N_JOINTS]);
 
 /**
  * Inputs per unit of each base parameter.
@@ -446,9 +478,9 @@ int ariane6_energy(
  *                                                         row-major
  * @return ARIANE6_STATUS_OK or status bits
  *
- * Operations: 817 (530 mul, 281 add, 6 neg), 8 div, 4 sqrt, 12 trig, 6 other.
+ * Operations: 817 (530 mul, 281 add, 6 neg), 8 div, 4 sqrt, 12 trig, 6 other calls (sign, select and the like).
  */
-int ariane6_regressor(
+ariane6_status_t ariane6_regressor(
     const ariane6_real_t q[ARIANE6_N_JOINTS],
     const ariane6_real_t dq[ARIANE6_N_JOINTS],
     const ariane6_real_t ddq[ARIANE6_N_JOINTS],
@@ -464,9 +496,9 @@ int ariane6_regressor(
  *                                                         row-major
  * @return ARIANE6_STATUS_OK or status bits
  *
- * Operations: 955 (592 mul, 350 add, 13 neg), 8 div, 4 sqrt, 12 trig, 6 other.
+ * Operations: 955 (592 mul, 350 add, 13 neg), 8 div, 4 sqrt, 12 trig, 6 other calls (sign, select and the like).
  */
-int ariane6_regressor_standard(
+ariane6_status_t ariane6_regressor_standard(
     const ariane6_real_t q[ARIANE6_N_JOINTS],
     const ariane6_real_t dq[ARIANE6_N_JOINTS],
     const ariane6_real_t ddq[ARIANE6_N_JOINTS],
@@ -481,9 +513,9 @@ int ariane6_regressor_standard(
  * @param[out]  out  [159]  [A per unit of the parameter]  structural non-zeros, row after row
  * @return ARIANE6_STATUS_OK or status bits
  *
- * Operations: 817 (530 mul, 281 add, 6 neg), 8 div, 4 sqrt, 12 trig, 6 other.
+ * Operations: 817 (530 mul, 281 add, 6 neg), 8 div, 4 sqrt, 12 trig, 6 other calls (sign, select and the like).
  */
-int ariane6_regressor_packed(
+ariane6_status_t ariane6_regressor_packed(
     const ariane6_real_t q[ARIANE6_N_JOINTS],
     const ariane6_real_t dq[ARIANE6_N_JOINTS],
     const ariane6_real_t ddq[ARIANE6_N_JOINTS],
@@ -501,9 +533,9 @@ int ariane6_regressor_packed(
  *                                                           row-major
  * @return ARIANE6_STATUS_OK or status bits
  *
- * Operations: 891 (576 mul, 306 add, 9 neg), 8 div, 4 sqrt, 12 trig, 6 other.
+ * Operations: 891 (576 mul, 306 add, 9 neg), 8 div, 4 sqrt, 12 trig, 6 other calls (sign, select and the like).
  */
-int ariane6_slotine_li_regressor(
+ariane6_status_t ariane6_slotine_li_regressor(
     const ariane6_real_t q[ARIANE6_N_JOINTS],
     const ariane6_real_t dq[ARIANE6_N_JOINTS],
     const ariane6_real_t dq_r[ARIANE6_N_JOINTS],
@@ -520,9 +552,9 @@ int ariane6_slotine_li_regressor(
  * @param[out]  out         [6]   [A]        inputs: motor currents, efforts where undriven
  * @return ARIANE6_STATUS_OK or status bits
  *
- * Operations: 725 (396 mul, 329 add, 0 neg), 8 div, 4 sqrt, 12 trig, 6 other.
+ * Operations: 725 (396 mul, 329 add, 0 neg), 8 div, 4 sqrt, 12 trig, 6 other calls (sign, select and the like).
  */
-int ariane6_inverse_dynamics_standard(
+ariane6_status_t ariane6_inverse_dynamics_standard(
     const ariane6_real_t q[ARIANE6_N_JOINTS],
     const ariane6_real_t dq[ARIANE6_N_JOINTS],
     const ariane6_real_t ddq[ARIANE6_N_JOINTS],
@@ -539,7 +571,7 @@ int ariane6_inverse_dynamics_standard(
  *
  * Operations: 186 (116 mul, 70 add, 0 neg), 4 div, 4 sqrt, 12 trig.
  */
-int ariane6_gravity_standard(
+ariane6_status_t ariane6_gravity_standard(
     const ariane6_real_t q[ARIANE6_N_JOINTS],
     const ariane6_real_t parameters[ARIANE6_N_STANDARD_PARAMETERS],
     ariane6_real_t out[ARIANE6_N_JOINTS]);
@@ -553,9 +585,9 @@ int ariane6_gravity_standard(
  * @param[out]  out         [6]   [A]      inputs: motor currents, efforts where undriven
  * @return ARIANE6_STATUS_OK or status bits
  *
- * Operations: 667 (373 mul, 294 add, 0 neg), 8 div, 4 sqrt, 12 trig, 6 other.
+ * Operations: 667 (373 mul, 294 add, 0 neg), 8 div, 4 sqrt, 12 trig, 6 other calls (sign, select and the like).
  */
-int ariane6_bias_standard(
+ariane6_status_t ariane6_bias_standard(
     const ariane6_real_t q[ARIANE6_N_JOINTS],
     const ariane6_real_t dq[ARIANE6_N_JOINTS],
     const ariane6_real_t parameters[ARIANE6_N_STANDARD_PARAMETERS],
@@ -571,7 +603,7 @@ int ariane6_bias_standard(
  *
  * Operations: 339 (178 mul, 161 add, 0 neg), 4 div, 4 sqrt, 12 trig.
  */
-int ariane6_mass_matrix_standard(
+ariane6_status_t ariane6_mass_matrix_standard(
     const ariane6_real_t q[ARIANE6_N_JOINTS],
     const ariane6_real_t parameters[ARIANE6_N_STANDARD_PARAMETERS],
     ariane6_real_t out[ARIANE6_N_JOINTS * ARIANE6_N_JOINTS]);
@@ -587,9 +619,9 @@ int ariane6_mass_matrix_standard(
  * @param[out]  out         [6]   [rad/s^2]  joint accelerations
  * @return ARIANE6_STATUS_OK or status bits
  *
- * Operations: 1144 (622 mul, 522 add, 0 neg), 10 div, 4 sqrt, 12 trig, 6 other.
+ * Operations: 1144 (622 mul, 522 add, 0 neg), 10 div, 4 sqrt, 12 trig, 6 other calls (sign, select and the like).
  */
-int ariane6_forward_dynamics_standard(
+ariane6_status_t ariane6_forward_dynamics_standard(
     const ariane6_real_t q[ARIANE6_N_JOINTS],
     const ariane6_real_t dq[ARIANE6_N_JOINTS],
     const ariane6_real_t input[ARIANE6_N_JOINTS],
@@ -608,12 +640,32 @@ int ariane6_forward_dynamics_standard(
  *
  * Operations: 400 (251 mul, 149 add, 0 neg), 4 div, 4 sqrt, 12 trig.
  */
-int ariane6_energy_standard(
+ariane6_status_t ariane6_energy_standard(
     const ariane6_real_t q[ARIANE6_N_JOINTS],
     const ariane6_real_t dq[ARIANE6_N_JOINTS],
     const ariane6_real_t parameters[ARIANE6_N_STANDARD_PARAMETERS],
     ariane6_real_t kinetic[1],
     ariane6_real_t potential[1]);
+
+/**
+ * Efforts of the drives at the joints that give the accelerations ddq in the state q, dq; standard
+ * parameters.
+ *
+ * @param[in]   q           [6]   [rad]      joint coordinates; norm at most 10000
+ * @param[in]   dq          [6]   [rad/s]    joint velocities; norm at most 100000
+ * @param[in]   ddq         [6]   [rad/s^2]  joint accelerations; norm at most 1e+08
+ * @param[in]   parameters  [78]             standard parameters; norm at most 1e+09
+ * @param[out]  out         [6]   [N m]      efforts at the joints
+ * @return ARIANE6_STATUS_OK or status bits
+ *
+ * Operations: 715 (386 mul, 329 add, 0 neg), 4 div, 4 sqrt, 12 trig, 6 other calls (sign, select and the like).
+ */
+ariane6_status_t ariane6_joint_effort_standard(
+    const ariane6_real_t q[ARIANE6_N_JOINTS],
+    const ariane6_real_t dq[ARIANE6_N_JOINTS],
+    const ariane6_real_t ddq[ARIANE6_N_JOINTS],
+    const ariane6_real_t parameters[ARIANE6_N_STANDARD_PARAMETERS],
+    ariane6_real_t out[ARIANE6_N_JOINTS]);
 
 /**
  * Homogeneous transforms from every link's frame to the base, link after link.
@@ -630,7 +682,7 @@ int ariane6_energy_standard(
  *
  * Operations: 115 (64 mul, 33 add, 18 neg), 12 trig.
  */
-int ariane6_forward_kinematics(
+ariane6_status_t ariane6_forward_kinematics(
     const ariane6_real_t q[ARIANE6_N_JOINTS],
     ariane6_real_t out[16 * ARIANE6_N_LINKS]);
 
@@ -643,7 +695,7 @@ int ariane6_forward_kinematics(
  *
  * Operations: 109 (66 mul, 37 add, 6 neg), 10 trig.
  */
-int ariane6_jacobian(
+ariane6_status_t ariane6_jacobian(
     const ariane6_real_t q[ARIANE6_N_JOINTS],
     ariane6_real_t out[6 * ARIANE6_N_JOINTS]);
 
@@ -663,7 +715,7 @@ int ariane6_jacobian(
  *
  * Operations: 90 (70 mul, 20 add, 0 neg), 4 div, 4 sqrt, 8 trig.
  */
-int ariane6_motor_from_joint(
+ariane6_status_t ariane6_motor_from_joint(
     const ariane6_real_t q[ARIANE6_N_JOINTS],
     const ariane6_real_t dq[ARIANE6_N_JOINTS],
     const ariane6_real_t ddq[ARIANE6_N_JOINTS],
@@ -687,7 +739,7 @@ int ariane6_motor_from_joint(
  *
  * Operations: 110 (74 mul, 32 add, 4 neg), 4 div, 4 sqrt, 4 trig.
  */
-int ariane6_joint_from_motor(
+ariane6_status_t ariane6_joint_from_motor(
     const ariane6_real_t q_m[ARIANE6_N_JOINTS],
     const ariane6_real_t dq_m[ARIANE6_N_JOINTS],
     const ariane6_real_t ddq_m[ARIANE6_N_JOINTS],
@@ -698,13 +750,13 @@ int ariane6_joint_from_motor(
 /**
  * Joint effort per input.
  *
- * @param[in]   q    [6]  [rad]            joint coordinates; norm at most 10000
- * @param[out]  out  [6]  [(N m) per (A)]  drive gains K
+ * @param[in]   q    [6]  [rad]        joint coordinates; norm at most 10000
+ * @param[out]  out  [6]  [N m per A]  drive gains K
  * @return ARIANE6_STATUS_OK or status bits
  *
  * Operations: 32 (24 mul, 8 add, 0 neg), 4 div, 4 sqrt, 8 trig.
  */
-int ariane6_drive_gain(
+ariane6_status_t ariane6_drive_gain(
     const ariane6_real_t q[ARIANE6_N_JOINTS],
     ariane6_real_t out[ARIANE6_N_JOINTS]);
 
@@ -712,19 +764,19 @@ int ariane6_drive_gain(
  * Inputs that give the accelerations ddq, and their derivatives; at a kink of a law, as of dry
  * friction at rest, the mean of both sides; base parameters.
  *
- * @param[in]   q             [6]   [rad]                joint coordinates; norm at most 10000
- * @param[in]   dq            [6]   [rad/s]              joint velocities; norm at most 100000
- * @param[in]   ddq           [6]   [rad/s^2]            joint accelerations; norm at most 1e+08
- * @param[in]   parameters    [54]                       base parameters; norm at most 1e+09
- * @param[out]  input         [6]   [A]                  inputs: motor currents, efforts where undriven
- * @param[out]  input_by_q    [36]  [(A) per (rad)]      d input / d q; 6 x 6, row-major
- * @param[out]  input_by_dq   [36]  [(A) per (rad/s)]    d input / d dq; 6 x 6, row-major
- * @param[out]  input_by_ddq  [36]  [(A) per (rad/s^2)]  d input / d ddq; 6 x 6, row-major
+ * @param[in]   q             [6]   [rad]              joint coordinates; norm at most 10000
+ * @param[in]   dq            [6]   [rad/s]            joint velocities; norm at most 100000
+ * @param[in]   ddq           [6]   [rad/s^2]          joint accelerations; norm at most 1e+08
+ * @param[in]   parameters    [54]                     base parameters; norm at most 1e+09
+ * @param[out]  input         [6]   [A]                inputs: motor currents, efforts where undriven
+ * @param[out]  input_by_q    [36]  [A per rad]        d input / d q; 6 x 6, row-major
+ * @param[out]  input_by_dq   [36]  [A per (rad/s)]    d input / d dq; 6 x 6, row-major
+ * @param[out]  input_by_ddq  [36]  [A per (rad/s^2)]  d input / d ddq; 6 x 6, row-major
  * @return ARIANE6_STATUS_OK or status bits
  *
- * Operations: 2698 (1586 mul, 1109 add, 3 neg), 16 div, 4 sqrt, 12 trig, 10 other.
+ * Operations: 2698 (1586 mul, 1109 add, 3 neg), 16 div, 4 sqrt, 12 trig, 10 other calls (sign, select and the like).
  */
-int ariane6_inverse_dynamics_derivatives(
+ariane6_status_t ariane6_inverse_dynamics_derivatives(
     const ariane6_real_t q[ARIANE6_N_JOINTS],
     const ariane6_real_t dq[ARIANE6_N_JOINTS],
     const ariane6_real_t ddq[ARIANE6_N_JOINTS],
@@ -744,14 +796,14 @@ int ariane6_inverse_dynamics_derivatives(
  *                                                           norm at most 1e+09
  * @param[in]   parameters    [54]                           base parameters; norm at most 1e+09
  * @param[out]  ddq           [6]   [rad/s^2]                joint accelerations
- * @param[out]  ddq_by_q      [36]  [(rad/s^2) per (rad)]    d ddq / d q; 6 x 6, row-major
+ * @param[out]  ddq_by_q      [36]  [(rad/s^2) per rad]      d ddq / d q; 6 x 6, row-major
  * @param[out]  ddq_by_dq     [36]  [(rad/s^2) per (rad/s)]  d ddq / d dq; 6 x 6, row-major
- * @param[out]  ddq_by_input  [36]  [(rad/s^2) per (A)]      d ddq / d input; 6 x 6, row-major
+ * @param[out]  ddq_by_input  [36]  [(rad/s^2) per A]        d ddq / d input; 6 x 6, row-major
  * @return ARIANE6_STATUS_OK or status bits
  *
- * Operations: 4123 (2359 mul, 1758 add, 6 neg), 22 div, 4 sqrt, 12 trig, 10 other.
+ * Operations: 4123 (2359 mul, 1758 add, 6 neg), 22 div, 4 sqrt, 12 trig, 10 other calls (sign, select and the like).
  */
-int ariane6_forward_dynamics_derivatives(
+ariane6_status_t ariane6_forward_dynamics_derivatives(
     const ariane6_real_t q[ARIANE6_N_JOINTS],
     const ariane6_real_t dq[ARIANE6_N_JOINTS],
     const ariane6_real_t input[ARIANE6_N_JOINTS],
@@ -765,19 +817,19 @@ int ariane6_forward_dynamics_derivatives(
  * Inputs that give the accelerations ddq, and their derivatives; at a kink of a law, as of dry
  * friction at rest, the mean of both sides; standard parameters.
  *
- * @param[in]   q             [6]   [rad]                joint coordinates; norm at most 10000
- * @param[in]   dq            [6]   [rad/s]              joint velocities; norm at most 100000
- * @param[in]   ddq           [6]   [rad/s^2]            joint accelerations; norm at most 1e+08
- * @param[in]   parameters    [78]                       standard parameters; norm at most 1e+09
- * @param[out]  input         [6]   [A]                  inputs: motor currents, efforts where undriven
- * @param[out]  input_by_q    [36]  [(A) per (rad)]      d input / d q; 6 x 6, row-major
- * @param[out]  input_by_dq   [36]  [(A) per (rad/s)]    d input / d dq; 6 x 6, row-major
- * @param[out]  input_by_ddq  [36]  [(A) per (rad/s^2)]  d input / d ddq; 6 x 6, row-major
+ * @param[in]   q             [6]   [rad]              joint coordinates; norm at most 10000
+ * @param[in]   dq            [6]   [rad/s]            joint velocities; norm at most 100000
+ * @param[in]   ddq           [6]   [rad/s^2]          joint accelerations; norm at most 1e+08
+ * @param[in]   parameters    [78]                     standard parameters; norm at most 1e+09
+ * @param[out]  input         [6]   [A]                inputs: motor currents, efforts where undriven
+ * @param[out]  input_by_q    [36]  [A per rad]        d input / d q; 6 x 6, row-major
+ * @param[out]  input_by_dq   [36]  [A per (rad/s)]    d input / d dq; 6 x 6, row-major
+ * @param[out]  input_by_ddq  [36]  [A per (rad/s^2)]  d input / d ddq; 6 x 6, row-major
  * @return ARIANE6_STATUS_OK or status bits
  *
- * Operations: 2954 (1696 mul, 1254 add, 4 neg), 16 div, 4 sqrt, 12 trig, 10 other.
+ * Operations: 2954 (1696 mul, 1254 add, 4 neg), 16 div, 4 sqrt, 12 trig, 10 other calls (sign, select and the like).
  */
-int ariane6_inverse_dynamics_derivatives_standard(
+ariane6_status_t ariane6_inverse_dynamics_derivatives_standard(
     const ariane6_real_t q[ARIANE6_N_JOINTS],
     const ariane6_real_t dq[ARIANE6_N_JOINTS],
     const ariane6_real_t ddq[ARIANE6_N_JOINTS],
@@ -797,14 +849,14 @@ int ariane6_inverse_dynamics_derivatives_standard(
  *                                                           norm at most 1e+09
  * @param[in]   parameters    [78]                           standard parameters; norm at most 1e+09
  * @param[out]  ddq           [6]   [rad/s^2]                joint accelerations
- * @param[out]  ddq_by_q      [36]  [(rad/s^2) per (rad)]    d ddq / d q; 6 x 6, row-major
+ * @param[out]  ddq_by_q      [36]  [(rad/s^2) per rad]      d ddq / d q; 6 x 6, row-major
  * @param[out]  ddq_by_dq     [36]  [(rad/s^2) per (rad/s)]  d ddq / d dq; 6 x 6, row-major
- * @param[out]  ddq_by_input  [36]  [(rad/s^2) per (A)]      d ddq / d input; 6 x 6, row-major
+ * @param[out]  ddq_by_input  [36]  [(rad/s^2) per A]        d ddq / d input; 6 x 6, row-major
  * @return ARIANE6_STATUS_OK or status bits
  *
- * Operations: 4468 (2509 mul, 1950 add, 9 neg), 22 div, 4 sqrt, 12 trig, 10 other.
+ * Operations: 4468 (2509 mul, 1950 add, 9 neg), 22 div, 4 sqrt, 12 trig, 10 other calls (sign, select and the like).
  */
-int ariane6_forward_dynamics_derivatives_standard(
+ariane6_status_t ariane6_forward_dynamics_derivatives_standard(
     const ariane6_real_t q[ARIANE6_N_JOINTS],
     const ariane6_real_t dq[ARIANE6_N_JOINTS],
     const ariane6_real_t input[ARIANE6_N_JOINTS],
@@ -813,6 +865,455 @@ int ariane6_forward_dynamics_derivatives_standard(
     ariane6_real_t ddq_by_q[ARIANE6_N_JOINTS * ARIANE6_N_JOINTS],
     ariane6_real_t ddq_by_dq[ARIANE6_N_JOINTS * ARIANE6_N_JOINTS],
     ariane6_real_t ddq_by_input[ARIANE6_N_JOINTS * ARIANE6_N_JOINTS]);
+
+/**
+ * External efforts at the joints by the generalised momentum, with a delay of 1 / gain; state: zero at
+ * first, then what the step before gave; base parameters.
+ *
+ * @param[in]   q           [6]   [rad]       joint coordinates; norm at most 10000
+ * @param[in]   dq          [6]   [rad/s]     joint velocities; norm at most 100000
+ * @param[in]   input       [6]   [A]         inputs: motor currents, efforts where undriven; norm at most
+ *                                            1e+09
+ * @param[in]   dt          [1]   [s]         time step; norm at most 10000
+ * @param[in]   gain        [6]   [1/s]       gains of the observer, gain dt below 1; norm at most 100000
+ * @param[in]   parameters  [54]              base parameters; norm at most 1e+09
+ * @param[in]   state       [6]   [kg m^2/s]  state of the observer: the momentum that the model expects; norm
+ *                                            at most 1e+09
+ * @param[out]  state_next  [6]   [kg m^2/s]  state after the step
+ * @param[out]  external    [6]   [N m]       efforts that act on the arm from outside
+ * @return ARIANE6_STATUS_OK or status bits
+ *
+ * Operations: 656 (411 mul, 239 add, 6 neg), 4 div, 4 sqrt, 12 trig, 6 other calls (sign, select and the like).
+ */
+ariane6_status_t ariane6_momentum_observer_step(
+    const ariane6_real_t q[ARIANE6_N_JOINTS],
+    const ariane6_real_t dq[ARIANE6_N_JOINTS],
+    const ariane6_real_t input[ARIANE6_N_JOINTS],
+    const ariane6_real_t dt[1],
+    const ariane6_real_t gain[ARIANE6_N_JOINTS],
+    const ariane6_real_t parameters[ARIANE6_N_PARAMETERS],
+    const ariane6_real_t state[ARIANE6_N_OBSERVER_STATES],
+    ariane6_real_t state_next[ARIANE6_N_OBSERVER_STATES],
+    ariane6_real_t external[ARIANE6_N_JOINTS]);
+
+/**
+ * External efforts at the joints by the generalised momentum, with a delay of 1 / gain; state: zero at
+ * first, then what the step before gave; standard parameters.
+ *
+ * @param[in]   q           [6]   [rad]       joint coordinates; norm at most 10000
+ * @param[in]   dq          [6]   [rad/s]     joint velocities; norm at most 100000
+ * @param[in]   input       [6]   [A]         inputs: motor currents, efforts where undriven; norm at most
+ *                                            1e+09
+ * @param[in]   dt          [1]   [s]         time step; norm at most 10000
+ * @param[in]   gain        [6]   [1/s]       gains of the observer, gain dt below 1; norm at most 100000
+ * @param[in]   parameters  [78]              standard parameters; norm at most 1e+09
+ * @param[in]   state       [6]   [kg m^2/s]  state of the observer: the momentum that the model expects; norm
+ *                                            at most 1e+09
+ * @param[out]  state_next  [6]   [kg m^2/s]  state after the step
+ * @param[out]  external    [6]   [N m]       efforts that act on the arm from outside
+ * @return ARIANE6_STATUS_OK or status bits
+ *
+ * Operations: 810 (493 mul, 311 add, 6 neg), 4 div, 4 sqrt, 12 trig, 6 other calls (sign, select and the like).
+ */
+ariane6_status_t ariane6_momentum_observer_step_standard(
+    const ariane6_real_t q[ARIANE6_N_JOINTS],
+    const ariane6_real_t dq[ARIANE6_N_JOINTS],
+    const ariane6_real_t input[ARIANE6_N_JOINTS],
+    const ariane6_real_t dt[1],
+    const ariane6_real_t gain[ARIANE6_N_JOINTS],
+    const ariane6_real_t parameters[ARIANE6_N_STANDARD_PARAMETERS],
+    const ariane6_real_t state[ARIANE6_N_OBSERVER_STATES],
+    ariane6_real_t state_next[ARIANE6_N_OBSERVER_STATES],
+    ariane6_real_t external[ARIANE6_N_JOINTS]);
+
+/*
+ * At the ends of the strokes, where noise of an encoder may lead beyond: the functions above answer with zeros
+ * there, those that end in _nearest with what they give at the nearest point of the strokes, and the bit
+ * ARIANE6_STATUS_STROKE. With any other bit, all of their outputs are zero too.
+ */
+
+/**
+ * The nearest joint coordinates within the strokes: `nearest` is `q` where these are within.
+ *
+ * @return ARIANE6_STATUS_OK; ARIANE6_STATUS_STROKE where they are beyond; ARIANE6_STATUS_INPUT, and
+ *         `nearest` is `q`, where one is not finite or beyond its bound
+ */
+ariane6_status_t ariane6_onto_strokes(
+    const ariane6_real_t q[ARIANE6_N_JOINTS],
+    ariane6_real_t nearest[ARIANE6_N_JOINTS]);
+
+/**
+ * The nearest motor coordinates within the strokes: `nearest` is `q_m` where these are within.
+ *
+ * @return ARIANE6_STATUS_OK; ARIANE6_STATUS_STROKE where they are beyond; ARIANE6_STATUS_INPUT, and
+ *         `nearest` is `q_m`, where one is not finite or beyond its bound
+ */
+ariane6_status_t ariane6_motors_onto_strokes(
+    const ariane6_real_t q_m[ARIANE6_N_JOINTS],
+    ariane6_real_t nearest[ARIANE6_N_JOINTS]);
+
+/** ariane6_inverse_dynamics at the nearest point of the strokes. */
+static inline ariane6_status_t ariane6_inverse_dynamics_nearest(
+    const ariane6_real_t q[ARIANE6_N_JOINTS],
+    const ariane6_real_t dq[ARIANE6_N_JOINTS],
+    const ariane6_real_t ddq[ARIANE6_N_JOINTS],
+    const ariane6_real_t parameters[ARIANE6_N_PARAMETERS],
+    ariane6_real_t out[ARIANE6_N_JOINTS])
+{
+    ariane6_real_t nearest[ARIANE6_N_JOINTS];
+    const ariane6_status_t beyond = ariane6_onto_strokes(q, nearest);
+    return beyond | ariane6_inverse_dynamics(nearest, dq, ddq, parameters, out);
+}
+
+/** ariane6_gravity at the nearest point of the strokes. */
+static inline ariane6_status_t ariane6_gravity_nearest(
+    const ariane6_real_t q[ARIANE6_N_JOINTS],
+    const ariane6_real_t parameters[ARIANE6_N_PARAMETERS],
+    ariane6_real_t out[ARIANE6_N_JOINTS])
+{
+    ariane6_real_t nearest[ARIANE6_N_JOINTS];
+    const ariane6_status_t beyond = ariane6_onto_strokes(q, nearest);
+    return beyond | ariane6_gravity(nearest, parameters, out);
+}
+
+/** ariane6_bias at the nearest point of the strokes. */
+static inline ariane6_status_t ariane6_bias_nearest(
+    const ariane6_real_t q[ARIANE6_N_JOINTS],
+    const ariane6_real_t dq[ARIANE6_N_JOINTS],
+    const ariane6_real_t parameters[ARIANE6_N_PARAMETERS],
+    ariane6_real_t out[ARIANE6_N_JOINTS])
+{
+    ariane6_real_t nearest[ARIANE6_N_JOINTS];
+    const ariane6_status_t beyond = ariane6_onto_strokes(q, nearest);
+    return beyond | ariane6_bias(nearest, dq, parameters, out);
+}
+
+/** ariane6_mass_matrix at the nearest point of the strokes. */
+static inline ariane6_status_t ariane6_mass_matrix_nearest(
+    const ariane6_real_t q[ARIANE6_N_JOINTS],
+    const ariane6_real_t parameters[ARIANE6_N_PARAMETERS],
+    ariane6_real_t out[ARIANE6_N_JOINTS * ARIANE6_N_JOINTS])
+{
+    ariane6_real_t nearest[ARIANE6_N_JOINTS];
+    const ariane6_status_t beyond = ariane6_onto_strokes(q, nearest);
+    return beyond | ariane6_mass_matrix(nearest, parameters, out);
+}
+
+/** ariane6_forward_dynamics at the nearest point of the strokes. */
+static inline ariane6_status_t ariane6_forward_dynamics_nearest(
+    const ariane6_real_t q[ARIANE6_N_JOINTS],
+    const ariane6_real_t dq[ARIANE6_N_JOINTS],
+    const ariane6_real_t input[ARIANE6_N_JOINTS],
+    const ariane6_real_t parameters[ARIANE6_N_PARAMETERS],
+    ariane6_real_t out[ARIANE6_N_JOINTS])
+{
+    ariane6_real_t nearest[ARIANE6_N_JOINTS];
+    const ariane6_status_t beyond = ariane6_onto_strokes(q, nearest);
+    return beyond | ariane6_forward_dynamics(nearest, dq, input, parameters, out);
+}
+
+/** ariane6_energy at the nearest point of the strokes. */
+static inline ariane6_status_t ariane6_energy_nearest(
+    const ariane6_real_t q[ARIANE6_N_JOINTS],
+    const ariane6_real_t dq[ARIANE6_N_JOINTS],
+    const ariane6_real_t parameters[ARIANE6_N_PARAMETERS],
+    ariane6_real_t kinetic[1],
+    ariane6_real_t potential[1])
+{
+    ariane6_real_t nearest[ARIANE6_N_JOINTS];
+    const ariane6_status_t beyond = ariane6_onto_strokes(q, nearest);
+    return beyond | ariane6_energy(nearest, dq, parameters, kinetic, potential);
+}
+
+/** ariane6_joint_effort at the nearest point of the strokes. */
+static inline ariane6_status_t ariane6_joint_effort_nearest(
+    const ariane6_real_t q[ARIANE6_N_JOINTS],
+    const ariane6_real_t dq[ARIANE6_N_JOINTS],
+    const ariane6_real_t ddq[ARIANE6_N_JOINTS],
+    const ariane6_real_t parameters[ARIANE6_N_PARAMETERS],
+    ariane6_real_t out[ARIANE6_N_JOINTS])
+{
+    ariane6_real_t nearest[ARIANE6_N_JOINTS];
+    const ariane6_status_t beyond = ariane6_onto_strokes(q, nearest);
+    return beyond | ariane6_joint_effort(nearest, dq, ddq, parameters, out);
+}
+
+/** ariane6_regressor at the nearest point of the strokes. */
+static inline ariane6_status_t ariane6_regressor_nearest(
+    const ariane6_real_t q[ARIANE6_N_JOINTS],
+    const ariane6_real_t dq[ARIANE6_N_JOINTS],
+    const ariane6_real_t ddq[ARIANE6_N_JOINTS],
+    ariane6_real_t out[ARIANE6_N_JOINTS * ARIANE6_N_PARAMETERS])
+{
+    ariane6_real_t nearest[ARIANE6_N_JOINTS];
+    const ariane6_status_t beyond = ariane6_onto_strokes(q, nearest);
+    return beyond | ariane6_regressor(nearest, dq, ddq, out);
+}
+
+/** ariane6_regressor_standard at the nearest point of the strokes. */
+static inline ariane6_status_t ariane6_regressor_standard_nearest(
+    const ariane6_real_t q[ARIANE6_N_JOINTS],
+    const ariane6_real_t dq[ARIANE6_N_JOINTS],
+    const ariane6_real_t ddq[ARIANE6_N_JOINTS],
+    ariane6_real_t out[ARIANE6_N_JOINTS * ARIANE6_N_STANDARD_PARAMETERS])
+{
+    ariane6_real_t nearest[ARIANE6_N_JOINTS];
+    const ariane6_status_t beyond = ariane6_onto_strokes(q, nearest);
+    return beyond | ariane6_regressor_standard(nearest, dq, ddq, out);
+}
+
+/** ariane6_regressor_packed at the nearest point of the strokes. */
+static inline ariane6_status_t ariane6_regressor_packed_nearest(
+    const ariane6_real_t q[ARIANE6_N_JOINTS],
+    const ariane6_real_t dq[ARIANE6_N_JOINTS],
+    const ariane6_real_t ddq[ARIANE6_N_JOINTS],
+    ariane6_real_t out[ARIANE6_N_PACKED])
+{
+    ariane6_real_t nearest[ARIANE6_N_JOINTS];
+    const ariane6_status_t beyond = ariane6_onto_strokes(q, nearest);
+    return beyond | ariane6_regressor_packed(nearest, dq, ddq, out);
+}
+
+/** ariane6_slotine_li_regressor at the nearest point of the strokes. */
+static inline ariane6_status_t ariane6_slotine_li_regressor_nearest(
+    const ariane6_real_t q[ARIANE6_N_JOINTS],
+    const ariane6_real_t dq[ARIANE6_N_JOINTS],
+    const ariane6_real_t dq_r[ARIANE6_N_JOINTS],
+    const ariane6_real_t ddq_r[ARIANE6_N_JOINTS],
+    ariane6_real_t out[ARIANE6_N_JOINTS * ARIANE6_N_PARAMETERS])
+{
+    ariane6_real_t nearest[ARIANE6_N_JOINTS];
+    const ariane6_status_t beyond = ariane6_onto_strokes(q, nearest);
+    return beyond | ariane6_slotine_li_regressor(nearest, dq, dq_r, ddq_r, out);
+}
+
+/** ariane6_inverse_dynamics_standard at the nearest point of the strokes. */
+static inline ariane6_status_t ariane6_inverse_dynamics_standard_nearest(
+    const ariane6_real_t q[ARIANE6_N_JOINTS],
+    const ariane6_real_t dq[ARIANE6_N_JOINTS],
+    const ariane6_real_t ddq[ARIANE6_N_JOINTS],
+    const ariane6_real_t parameters[ARIANE6_N_STANDARD_PARAMETERS],
+    ariane6_real_t out[ARIANE6_N_JOINTS])
+{
+    ariane6_real_t nearest[ARIANE6_N_JOINTS];
+    const ariane6_status_t beyond = ariane6_onto_strokes(q, nearest);
+    return beyond | ariane6_inverse_dynamics_standard(nearest, dq, ddq, parameters, out);
+}
+
+/** ariane6_gravity_standard at the nearest point of the strokes. */
+static inline ariane6_status_t ariane6_gravity_standard_nearest(
+    const ariane6_real_t q[ARIANE6_N_JOINTS],
+    const ariane6_real_t parameters[ARIANE6_N_STANDARD_PARAMETERS],
+    ariane6_real_t out[ARIANE6_N_JOINTS])
+{
+    ariane6_real_t nearest[ARIANE6_N_JOINTS];
+    const ariane6_status_t beyond = ariane6_onto_strokes(q, nearest);
+    return beyond | ariane6_gravity_standard(nearest, parameters, out);
+}
+
+/** ariane6_bias_standard at the nearest point of the strokes. */
+static inline ariane6_status_t ariane6_bias_standard_nearest(
+    const ariane6_real_t q[ARIANE6_N_JOINTS],
+    const ariane6_real_t dq[ARIANE6_N_JOINTS],
+    const ariane6_real_t parameters[ARIANE6_N_STANDARD_PARAMETERS],
+    ariane6_real_t out[ARIANE6_N_JOINTS])
+{
+    ariane6_real_t nearest[ARIANE6_N_JOINTS];
+    const ariane6_status_t beyond = ariane6_onto_strokes(q, nearest);
+    return beyond | ariane6_bias_standard(nearest, dq, parameters, out);
+}
+
+/** ariane6_mass_matrix_standard at the nearest point of the strokes. */
+static inline ariane6_status_t ariane6_mass_matrix_standard_nearest(
+    const ariane6_real_t q[ARIANE6_N_JOINTS],
+    const ariane6_real_t parameters[ARIANE6_N_STANDARD_PARAMETERS],
+    ariane6_real_t out[ARIANE6_N_JOINTS * ARIANE6_N_JOINTS])
+{
+    ariane6_real_t nearest[ARIANE6_N_JOINTS];
+    const ariane6_status_t beyond = ariane6_onto_strokes(q, nearest);
+    return beyond | ariane6_mass_matrix_standard(nearest, parameters, out);
+}
+
+/** ariane6_forward_dynamics_standard at the nearest point of the strokes. */
+static inline ariane6_status_t ariane6_forward_dynamics_standard_nearest(
+    const ariane6_real_t q[ARIANE6_N_JOINTS],
+    const ariane6_real_t dq[ARIANE6_N_JOINTS],
+    const ariane6_real_t input[ARIANE6_N_JOINTS],
+    const ariane6_real_t parameters[ARIANE6_N_STANDARD_PARAMETERS],
+    ariane6_real_t out[ARIANE6_N_JOINTS])
+{
+    ariane6_real_t nearest[ARIANE6_N_JOINTS];
+    const ariane6_status_t beyond = ariane6_onto_strokes(q, nearest);
+    return beyond | ariane6_forward_dynamics_standard(nearest, dq, input, parameters, out);
+}
+
+/** ariane6_energy_standard at the nearest point of the strokes. */
+static inline ariane6_status_t ariane6_energy_standard_nearest(
+    const ariane6_real_t q[ARIANE6_N_JOINTS],
+    const ariane6_real_t dq[ARIANE6_N_JOINTS],
+    const ariane6_real_t parameters[ARIANE6_N_STANDARD_PARAMETERS],
+    ariane6_real_t kinetic[1],
+    ariane6_real_t potential[1])
+{
+    ariane6_real_t nearest[ARIANE6_N_JOINTS];
+    const ariane6_status_t beyond = ariane6_onto_strokes(q, nearest);
+    return beyond | ariane6_energy_standard(nearest, dq, parameters, kinetic, potential);
+}
+
+/** ariane6_joint_effort_standard at the nearest point of the strokes. */
+static inline ariane6_status_t ariane6_joint_effort_standard_nearest(
+    const ariane6_real_t q[ARIANE6_N_JOINTS],
+    const ariane6_real_t dq[ARIANE6_N_JOINTS],
+    const ariane6_real_t ddq[ARIANE6_N_JOINTS],
+    const ariane6_real_t parameters[ARIANE6_N_STANDARD_PARAMETERS],
+    ariane6_real_t out[ARIANE6_N_JOINTS])
+{
+    ariane6_real_t nearest[ARIANE6_N_JOINTS];
+    const ariane6_status_t beyond = ariane6_onto_strokes(q, nearest);
+    return beyond | ariane6_joint_effort_standard(nearest, dq, ddq, parameters, out);
+}
+
+/** ariane6_motor_from_joint at the nearest point of the strokes. */
+static inline ariane6_status_t ariane6_motor_from_joint_nearest(
+    const ariane6_real_t q[ARIANE6_N_JOINTS],
+    const ariane6_real_t dq[ARIANE6_N_JOINTS],
+    const ariane6_real_t ddq[ARIANE6_N_JOINTS],
+    ariane6_real_t q_m[ARIANE6_N_JOINTS],
+    ariane6_real_t dq_m[ARIANE6_N_JOINTS],
+    ariane6_real_t ddq_m[ARIANE6_N_JOINTS])
+{
+    ariane6_real_t nearest[ARIANE6_N_JOINTS];
+    const ariane6_status_t beyond = ariane6_onto_strokes(q, nearest);
+    return beyond | ariane6_motor_from_joint(nearest, dq, ddq, q_m, dq_m, ddq_m);
+}
+
+/** ariane6_joint_from_motor at the nearest point of the strokes. */
+static inline ariane6_status_t ariane6_joint_from_motor_nearest(
+    const ariane6_real_t q_m[ARIANE6_N_JOINTS],
+    const ariane6_real_t dq_m[ARIANE6_N_JOINTS],
+    const ariane6_real_t ddq_m[ARIANE6_N_JOINTS],
+    ariane6_real_t q[ARIANE6_N_JOINTS],
+    ariane6_real_t dq[ARIANE6_N_JOINTS],
+    ariane6_real_t ddq[ARIANE6_N_JOINTS])
+{
+    ariane6_real_t nearest[ARIANE6_N_JOINTS];
+    const ariane6_status_t beyond = ariane6_motors_onto_strokes(q_m, nearest);
+    return beyond | ariane6_joint_from_motor(nearest, dq_m, ddq_m, q, dq, ddq);
+}
+
+/** ariane6_drive_gain at the nearest point of the strokes. */
+static inline ariane6_status_t ariane6_drive_gain_nearest(
+    const ariane6_real_t q[ARIANE6_N_JOINTS],
+    ariane6_real_t out[ARIANE6_N_JOINTS])
+{
+    ariane6_real_t nearest[ARIANE6_N_JOINTS];
+    const ariane6_status_t beyond = ariane6_onto_strokes(q, nearest);
+    return beyond | ariane6_drive_gain(nearest, out);
+}
+
+/** ariane6_inverse_dynamics_derivatives at the nearest point of the strokes. */
+static inline ariane6_status_t ariane6_inverse_dynamics_derivatives_nearest(
+    const ariane6_real_t q[ARIANE6_N_JOINTS],
+    const ariane6_real_t dq[ARIANE6_N_JOINTS],
+    const ariane6_real_t ddq[ARIANE6_N_JOINTS],
+    const ariane6_real_t parameters[ARIANE6_N_PARAMETERS],
+    ariane6_real_t input[ARIANE6_N_JOINTS],
+    ariane6_real_t input_by_q[ARIANE6_N_JOINTS * ARIANE6_N_JOINTS],
+    ariane6_real_t input_by_dq[ARIANE6_N_JOINTS * ARIANE6_N_JOINTS],
+    ariane6_real_t input_by_ddq[ARIANE6_N_JOINTS * ARIANE6_N_JOINTS])
+{
+    ariane6_real_t nearest[ARIANE6_N_JOINTS];
+    const ariane6_status_t beyond = ariane6_onto_strokes(q, nearest);
+    return beyond | ariane6_inverse_dynamics_derivatives(nearest, dq, ddq, parameters, input, input_by_q,
+        input_by_dq, input_by_ddq);
+}
+
+/** ariane6_forward_dynamics_derivatives at the nearest point of the strokes. */
+static inline ariane6_status_t ariane6_forward_dynamics_derivatives_nearest(
+    const ariane6_real_t q[ARIANE6_N_JOINTS],
+    const ariane6_real_t dq[ARIANE6_N_JOINTS],
+    const ariane6_real_t input[ARIANE6_N_JOINTS],
+    const ariane6_real_t parameters[ARIANE6_N_PARAMETERS],
+    ariane6_real_t ddq[ARIANE6_N_JOINTS],
+    ariane6_real_t ddq_by_q[ARIANE6_N_JOINTS * ARIANE6_N_JOINTS],
+    ariane6_real_t ddq_by_dq[ARIANE6_N_JOINTS * ARIANE6_N_JOINTS],
+    ariane6_real_t ddq_by_input[ARIANE6_N_JOINTS * ARIANE6_N_JOINTS])
+{
+    ariane6_real_t nearest[ARIANE6_N_JOINTS];
+    const ariane6_status_t beyond = ariane6_onto_strokes(q, nearest);
+    return beyond | ariane6_forward_dynamics_derivatives(nearest, dq, input, parameters, ddq, ddq_by_q,
+        ddq_by_dq, ddq_by_input);
+}
+
+/** ariane6_inverse_dynamics_derivatives_standard at the nearest point of the strokes. */
+static inline ariane6_status_t ariane6_inverse_dynamics_derivatives_standard_nearest(
+    const ariane6_real_t q[ARIANE6_N_JOINTS],
+    const ariane6_real_t dq[ARIANE6_N_JOINTS],
+    const ariane6_real_t ddq[ARIANE6_N_JOINTS],
+    const ariane6_real_t parameters[ARIANE6_N_STANDARD_PARAMETERS],
+    ariane6_real_t input[ARIANE6_N_JOINTS],
+    ariane6_real_t input_by_q[ARIANE6_N_JOINTS * ARIANE6_N_JOINTS],
+    ariane6_real_t input_by_dq[ARIANE6_N_JOINTS * ARIANE6_N_JOINTS],
+    ariane6_real_t input_by_ddq[ARIANE6_N_JOINTS * ARIANE6_N_JOINTS])
+{
+    ariane6_real_t nearest[ARIANE6_N_JOINTS];
+    const ariane6_status_t beyond = ariane6_onto_strokes(q, nearest);
+    return beyond | ariane6_inverse_dynamics_derivatives_standard(nearest, dq, ddq, parameters, input,
+        input_by_q, input_by_dq, input_by_ddq);
+}
+
+/** ariane6_forward_dynamics_derivatives_standard at the nearest point of the strokes. */
+static inline ariane6_status_t ariane6_forward_dynamics_derivatives_standard_nearest(
+    const ariane6_real_t q[ARIANE6_N_JOINTS],
+    const ariane6_real_t dq[ARIANE6_N_JOINTS],
+    const ariane6_real_t input[ARIANE6_N_JOINTS],
+    const ariane6_real_t parameters[ARIANE6_N_STANDARD_PARAMETERS],
+    ariane6_real_t ddq[ARIANE6_N_JOINTS],
+    ariane6_real_t ddq_by_q[ARIANE6_N_JOINTS * ARIANE6_N_JOINTS],
+    ariane6_real_t ddq_by_dq[ARIANE6_N_JOINTS * ARIANE6_N_JOINTS],
+    ariane6_real_t ddq_by_input[ARIANE6_N_JOINTS * ARIANE6_N_JOINTS])
+{
+    ariane6_real_t nearest[ARIANE6_N_JOINTS];
+    const ariane6_status_t beyond = ariane6_onto_strokes(q, nearest);
+    return beyond | ariane6_forward_dynamics_derivatives_standard(nearest, dq, input, parameters, ddq,
+        ddq_by_q, ddq_by_dq, ddq_by_input);
+}
+
+/** ariane6_momentum_observer_step at the nearest point of the strokes. */
+static inline ariane6_status_t ariane6_momentum_observer_step_nearest(
+    const ariane6_real_t q[ARIANE6_N_JOINTS],
+    const ariane6_real_t dq[ARIANE6_N_JOINTS],
+    const ariane6_real_t input[ARIANE6_N_JOINTS],
+    const ariane6_real_t dt[1],
+    const ariane6_real_t gain[ARIANE6_N_JOINTS],
+    const ariane6_real_t parameters[ARIANE6_N_PARAMETERS],
+    const ariane6_real_t state[ARIANE6_N_OBSERVER_STATES],
+    ariane6_real_t state_next[ARIANE6_N_OBSERVER_STATES],
+    ariane6_real_t external[ARIANE6_N_JOINTS])
+{
+    ariane6_real_t nearest[ARIANE6_N_JOINTS];
+    const ariane6_status_t beyond = ariane6_onto_strokes(q, nearest);
+    return beyond | ariane6_momentum_observer_step(nearest, dq, input, dt, gain, parameters, state,
+        state_next, external);
+}
+
+/** ariane6_momentum_observer_step_standard at the nearest point of the strokes. */
+static inline ariane6_status_t ariane6_momentum_observer_step_standard_nearest(
+    const ariane6_real_t q[ARIANE6_N_JOINTS],
+    const ariane6_real_t dq[ARIANE6_N_JOINTS],
+    const ariane6_real_t input[ARIANE6_N_JOINTS],
+    const ariane6_real_t dt[1],
+    const ariane6_real_t gain[ARIANE6_N_JOINTS],
+    const ariane6_real_t parameters[ARIANE6_N_STANDARD_PARAMETERS],
+    const ariane6_real_t state[ARIANE6_N_OBSERVER_STATES],
+    ariane6_real_t state_next[ARIANE6_N_OBSERVER_STATES],
+    ariane6_real_t external[ARIANE6_N_JOINTS])
+{
+    ariane6_real_t nearest[ARIANE6_N_JOINTS];
+    const ariane6_status_t beyond = ariane6_onto_strokes(q, nearest);
+    return beyond | ariane6_momentum_observer_step_standard(nearest, dq, input, dt, gain, parameters, state,
+        state_next, external);
+}
 
 #ifdef __cplusplus
 }

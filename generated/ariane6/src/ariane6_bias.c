@@ -6,7 +6,7 @@
  * Arm ariane6, description ac2a59ce556c2f1c.
  * SPDX-License-Identifier: 0BSD
  *
- * Operations: 566 (330 mul, 236 add, 0 neg), 8 div, 4 sqrt, 12 trig, 6 other.
+ * Operations: 566 (330 mul, 236 add, 0 neg), 8 div, 4 sqrt, 12 trig, 6 other calls (sign, select and the like).
  *
  * @param[in]   q           [6]   [rad]    joint coordinates; norm at most 10000
  * @param[in]   dq          [6]   [rad/s]  joint velocities; norm at most 100000
@@ -81,11 +81,11 @@
  */
 #include "ariane6_private.h"
 
-#if ARIANE6_GENERATION != 0xBA206C14UL
+#if ARIANE6_GENERATION != 0x13CD28B3UL
 #error "ariane6.h and ariane6_bias.c are of different generations: generate the arm again"
 #endif
 
-int ariane6_bias(
+ariane6_status_t ariane6_bias(
     const ariane6_real_t q[ARIANE6_N_JOINTS],
     const ariane6_real_t dq[ARIANE6_N_JOINTS],
     const ariane6_real_t parameters[ARIANE6_N_PARAMETERS],
@@ -94,7 +94,7 @@ int ariane6_bias(
     enum { ZZ1R = 0, XX2R, XY2, XZ2R, YZ2, ZZ2R, MX2R, MY2, XX3R, XY3R, XZ3, YZ3, ZZ3R, MX3R, MY3R, XX4R, XY4,
         XZ4, YZ4, ZZ4R, MX4, MY4R, XX5R, XY5, XZ5, YZ5, ZZ5R, MX5, MY5R, XX6R, XY6, XZ6R, YZ6R, ZZ6, MX6, MY6,
         FV1, FC1, IA1, FV2, FC2, IA2, FV3, FC3, IA3, FV4, FC4, IA4, FV5, FC5, IA5, FV6, FC6, IA6 };
-    int status = ARIANE6_STATUS_OK;
+    ariane6_status_t status = ARIANE6_STATUS_OK;
 
     if (!ariane6_within_joints(q, ARIANE6_C(1.0e8))
         || !ariane6_within_joints(dq, ARIANE6_C(1.0e10))
@@ -124,36 +124,36 @@ int ariane6_bias(
     ARIANE6_SINCOS(q[4], &t20, &t19);
     ariane6_real_t t25, t39;
     ARIANE6_SINCOS(q[5], &t25, &t39);
-    const ariane6_real_t t1 = t0 * dq[0];
+    const ariane6_real_t t1 = t0 * dq[0]; /* link j2: motion */
     const ariane6_real_t t4 = t3 * dq[0];
-    const ariane6_real_t t6 = t2 * t1 + t5 * t4;
+    const ariane6_real_t t6 = t2 * t1 + t5 * t4; /* link j3: motion */
     const ariane6_real_t t7 = t2 * t4 - t5 * t1;
     const ariane6_real_t t8 = t6 * t7;
     const ariane6_real_t t10 = dq[1] + dq[2];
     const ariane6_real_t t11 = t7 * t10;
-    const ariane6_real_t t12 = ARIANE6_C(2.0) * t11;
+    const ariane6_real_t t12 = ARIANE6_C(2.0) * t11; /* link j4: motion */
     const ariane6_real_t t14 = t13 * t12 - t9 * t8;
     const ariane6_real_t t15 = t9 * t6 - t13 * t10;
     const ariane6_real_t t16 = dq[3] + t7;
     const ariane6_real_t t17 = t15 * t16;
     const ariane6_real_t t18 = t14 + t17;
-    const ariane6_real_t t21 = t19 * t15 + t20 * t16;
+    const ariane6_real_t t21 = t19 * t15 + t20 * t16; /* link j5: motion */
     const ariane6_real_t t22 = t20 * t15 - t19 * t16;
     const ariane6_real_t t23 = t21 * t22;
-    const ariane6_real_t t24 = t18 + t23;
-    const ariane6_real_t t26 = t13 * t8 + t9 * t12;
+    const ariane6_real_t t24 = t18 + t23; /* link j6: motion */
+    const ariane6_real_t t26 = t13 * t8 + t9 * t12; /* link j4: motion */
     const ariane6_real_t t27 = t13 * t6 + t9 * t10;
     const ariane6_real_t t28 = t27 * t16;
     const ariane6_real_t t29 = t28 - t26;
-    const ariane6_real_t t30 = t28 + t29;
-    const ariane6_real_t t31 = t15 * t27;
-    const ariane6_real_t t32 = t6 * t10;
-    const ariane6_real_t t33 = t32 - t31;
+    const ariane6_real_t t30 = t28 + t29; /* link j5: motion */
+    const ariane6_real_t t31 = t15 * t27; /* link j4: motion */
+    const ariane6_real_t t32 = t6 * t10; /* link j3: motion */
+    const ariane6_real_t t33 = t32 - t31; /* link j5: motion */
     const ariane6_real_t t34 = t20 * t33 + t19 * t30;
     const ariane6_real_t t35 = dq[4] + t27;
     const ariane6_real_t t36 = t22 * t35;
     const ariane6_real_t t37 = t34 + t36;
-    const ariane6_real_t t38 = t36 + t37;
+    const ariane6_real_t t38 = t36 + t37; /* link j6: motion */
     const ariane6_real_t t40 = t25 * t24 + t39 * t38;
     const ariane6_real_t t41 = t25 * t21 + t39 * t35;
     const ariane6_real_t t42 = t22 - dq[5];
@@ -162,181 +162,222 @@ int ariane6_bias(
     const ariane6_real_t t45 = t25 * t38 - t39 * t24;
     const ariane6_real_t t46 = t39 * t21 - t25 * t35;
     const ariane6_real_t t47 = t46 * t42;
-    const ariane6_real_t t48 = t47 + (t45 + t47);
-    const ariane6_real_t t49 = t19 * t33 - t20 * t30;
+    const ariane6_real_t t48 = t47 + (t45 + t47); /* link j6: force and moment */
+    const ariane6_real_t t49 = t19 * t33 - t20 * t30; /* link j5: motion */
     const ariane6_real_t t50 = t21 * t35;
     const ariane6_real_t t51 = t49 + t50;
-    const ariane6_real_t t52 = t46 * t41;
-    const ariane6_real_t t53 = t51 + t52;
+    const ariane6_real_t t52 = t46 * t41; /* link j6: motion */
+    const ariane6_real_t t53 = t51 + t52; /* link j6: force and moment */
     const ariane6_real_t t54 = parameters[XX6R] * t44 - parameters[ZZ6] * t43 - parameters[XY6] * t48
         + parameters[XZ6R] * t53;
-    const ariane6_real_t t55 = t41 * t41;
+    const ariane6_real_t t55 = t41 * t41; /* link j6: motion */
     const ariane6_real_t t56 = t42 * t42;
     const ariane6_real_t t57 = dq[0] * dq[0];
-    const ariane6_real_t t58 = ARIANE6_C(0.18) * t57;
+    const ariane6_real_t t58 = ARIANE6_C(0.18) * t57; /* link j2: motion */
     const ariane6_real_t t59 = t3 * t58 + ARIANE6_C(-9.81) * t0;
     const ariane6_real_t t60 = t4 * t4;
     const ariane6_real_t t61 = dq[1] * dq[1];
-    const ariane6_real_t t62 = t59 + ARIANE6_C(0.685) * (t61 + t60);
-    const ariane6_real_t t63 = t0 * t58 + ARIANE6_C(9.81) * t3;
+    const ariane6_real_t t62 = t59 + ARIANE6_C(0.685) * (t61 + t60); /* link j3: motion */
+    const ariane6_real_t t63 = t0 * t58 + ARIANE6_C(9.81) * t3; /* link j2: motion */
     const ariane6_real_t t64 = t1 * t4;
-    const ariane6_real_t t65 = t63 + ARIANE6_C(0.685) * t64;
+    const ariane6_real_t t65 = t63 + ARIANE6_C(0.685) * t64; /* link j3: motion */
     const ariane6_real_t t66 = t2 * t62 - t5 * t65;
     const ariane6_real_t t67 = t7 * t7;
     const ariane6_real_t t68 = t10 * t10;
-    const ariane6_real_t t69 = t67 + t68;
+    const ariane6_real_t t69 = t67 + t68; /* link j4: motion */
     const ariane6_real_t t70 = t66 + (ARIANE6_C(-0.17) * t69 + ARIANE6_C(-0.488) * t8);
-    const ariane6_real_t t71 = dq[1] * t1;
-    const ariane6_real_t t72 = ARIANE6_C(1.37) * t71;
-    const ariane6_real_t t73 = t72 - (ARIANE6_C(0.34) * t32 + ARIANE6_C(-0.976) * t11);
+    const ariane6_real_t t71 = dq[1] * t1; /* link j2: motion */
+    const ariane6_real_t t72 = ARIANE6_C(1.37) * t71; /* link j3: motion */
+    const ariane6_real_t t73 = t72 - (ARIANE6_C(0.34) * t32 + ARIANE6_C(-0.976) * t11); /* link j4: motion */
     const ariane6_real_t t74 = t9 * t70 + t13 * t73;
-    const ariane6_real_t t75 = t5 * t62 + t2 * t65;
+    const ariane6_real_t t75 = t5 * t62 + t2 * t65; /* link j3: motion */
     const ariane6_real_t t76 = t6 * t6;
-    const ariane6_real_t t77 = t76 + t68;
+    const ariane6_real_t t77 = t76 + t68; /* link j4: motion */
     const ariane6_real_t t78 = t75 + (ARIANE6_C(-0.17) * t8 + ARIANE6_C(-0.488) * t77);
-    const ariane6_real_t t79 = t20 * t74 + t19 * t78;
+    const ariane6_real_t t79 = t20 * t74 + t19 * t78; /* link j5: motion */
+    /* link j6: force and moment */
     const ariane6_real_t t80 = t54 - parameters[YZ6R] * (t55 - t56) - parameters[MY6] * t79;
     const ariane6_real_t t81 = t44 - t43;
     const ariane6_real_t t82 = t51 - t52;
     const ariane6_real_t t83 = parameters[XY6] * t81 - t47 * (parameters[ZZ6] - parameters[XX6R])
         + parameters[YZ6R] * t82;
-    const ariane6_real_t t84 = t46 * t46;
+    const ariane6_real_t t84 = t46 * t46; /* link j6: motion */
+    /* link j6: force and moment */
     const ariane6_real_t t85 = t83 + parameters[XZ6R] * (t84 - t56) + parameters[MX6] * t79;
-    const ariane6_real_t t86 = t50 + t51;
+    const ariane6_real_t t86 = t50 + t51; /* link j6: motion */
     const ariane6_real_t t87 = t18 - t23;
+    /* link j5: force and moment */
     const ariane6_real_t t88 = parameters[XZ5] * t87 - (parameters[XX5R] * t37 + parameters[ZZ5R] * t36
         + parameters[XY5] * t86);
-    const ariane6_real_t t89 = t22 * t22;
+    const ariane6_real_t t89 = t22 * t22; /* link j5: motion */
     const ariane6_real_t t90 = t35 * t35;
-    const ariane6_real_t t91 = t13 * t70 - t9 * t73;
+    const ariane6_real_t t91 = t13 * t70 - t9 * t73; /* link j4: motion */
+    /* link j6: what it passes on */
     const ariane6_real_t t92 = t88 + parameters[YZ5] * (t89 - t90) - parameters[MY5R] * t91 + (t25 * t85
         - t39 * t80);
-    const ariane6_real_t t93 = t19 * t74 - t20 * t78;
+    const ariane6_real_t t93 = t19 * t74 - t20 * t78; /* link j5: motion */
+    /* link j6: force and moment */
     const ariane6_real_t t94 = parameters[MX6] * (t25 * t93 + t39 * t91) + parameters[MY6] * (t39 * t93
         - t25 * t91);
     const ariane6_real_t t95 = parameters[XX6R] * t52 - parameters[ZZ6] * t51 + parameters[YZ6R] * t45
         - parameters[XZ6R] * t40;
     const ariane6_real_t t96 = t95 + parameters[XY6] * (t84 - t55) + t94;
+    /* link j5: force and moment */
     const ariane6_real_t t97 = t50 * (parameters[XX5R] - parameters[ZZ5R]) - parameters[XY5] * t38
         + parameters[YZ5] * t24;
-    const ariane6_real_t t98 = t21 * t21;
+    const ariane6_real_t t98 = t21 * t21; /* link j5: motion */
+    /* link j6: what it passes on */
     const ariane6_real_t t99 = t97 + parameters[XZ5] * (t90 - t98) + parameters[MX5] * t91 + t96;
-    const ariane6_real_t t100 = t17 + t18;
+    const ariane6_real_t t100 = t17 + t18; /* link j5: motion */
     const ariane6_real_t t101 = t32 + t31;
+    /* link j4: force and moment */
     const ariane6_real_t t102 = parameters[XX4R] * t29 + parameters[ZZ4R] * t28 + parameters[XY4] * t100
         + parameters[XZ4] * t101;
-    const ariane6_real_t t103 = t27 * t27;
+    const ariane6_real_t t103 = t27 * t27; /* link j4: motion */
     const ariane6_real_t t104 = t16 * t16;
+    /* link j5: what it passes on */
     const ariane6_real_t t105 = t102 - parameters[YZ4] * (t103 - t104) - parameters[MY4R] * t78 + (t20 * t99
         - t19 * t92);
+    /* link j5: force and moment */
     const ariane6_real_t t106 = parameters[ZZ5R] * t18 + parameters[XX5R] * t23 - parameters[YZ5] * t49
         - parameters[XZ5] * t34;
     const ariane6_real_t t107 = t106 + parameters[XY5] * (t98 - t89) + (parameters[MX5] * t79
         + parameters[MY5R] * t93);
-    const ariane6_real_t t108 = t107 + (t25 * t80 + t39 * t85);
+    const ariane6_real_t t108 = t107 + (t25 * t80 + t39 * t85); /* link j6: what it passes on */
+    /* link j4: force and moment */
     const ariane6_real_t t109 = t17 * (parameters[ZZ4R] - parameters[XX4R]) + parameters[XY4] * t30
         + parameters[YZ4] * t33;
-    const ariane6_real_t t110 = t15 * t15;
+    const ariane6_real_t t110 = t15 * t15; /* link j4: motion */
+    /* link j5: what it passes on */
     const ariane6_real_t t111 = t109 + parameters[XZ4] * (t110 - t104) + parameters[MX4] * t78 + t108;
+    /* link j6: force and moment */
     const ariane6_real_t t112 = parameters[MY6] * t82 - parameters[MX6] * (t55 + t56);
     const ariane6_real_t t113 = parameters[MX6] * t53 + parameters[MY6] * (t84 + t56);
+    /* link j6: what it passes on */
     const ariane6_real_t t114 = t39 * t112 + t25 * t113 - (parameters[MX5] * (t89 + t90)
         + parameters[MY5R] * t24);
     const ariane6_real_t t115 = parameters[MX5] * t87 - parameters[MY5R] * (t98 + t90)
         - (parameters[MX6] * t48 + parameters[MY6] * t81);
+    /* link j5: what it passes on */
     const ariane6_real_t t116 = parameters[MY4R] * t33 - parameters[MX4] * (t103 + t104) + (t19 * t114
         - t20 * t115);
+    /* link j6: what it passes on */
     const ariane6_real_t t117 = parameters[MX5] * t86 - parameters[MY5R] * t38 + (t39 * t113 - t25 * t112);
+    /* link j5: what it passes on */
     const ariane6_real_t t118 = parameters[MX4] * t101 + parameters[MY4R] * (t110 + t104) + t117;
-    const ariane6_real_t t119 = t13 * t116 - t9 * t118;
-    const ariane6_real_t t120 = ARIANE6_C(-2.0) * t32;
+    const ariane6_real_t t119 = t13 * t116 - t9 * t118; /* link j4: what it passes on */
+    const ariane6_real_t t120 = ARIANE6_C(-2.0) * t32; /* link j4: motion */
+    /* link j3: force and moment */
     const ariane6_real_t t121 = parameters[XX3R] * t11 + parameters[ZZ3R] * t11 + parameters[XY3R] * t120
         + parameters[XZ3] * t8;
+    /* link j4: what it passes on */
     const ariane6_real_t t122 = t121 + parameters[YZ3] * (t67 - t68) + parameters[MY3R] * t72 + (t13 * t111
         - t9 * t105 + ARIANE6_C(-0.488) * t119);
+    /* link j4: force and moment */
     const ariane6_real_t t123 = parameters[XX4R] * t31 - parameters[ZZ4R] * t32 - parameters[YZ4] * t14
         + parameters[XZ4] * t26;
     const ariane6_real_t t124 = t123 + parameters[XY4] * (t110 - t103) + (parameters[MX4] * t91
         + parameters[MY4R] * t74);
-    const ariane6_real_t t125 = t124 + (t20 * t92 + t19 * t99);
+    const ariane6_real_t t125 = t124 + (t20 * t92 + t19 * t99); /* link j5: what it passes on */
+    /* link j3: force and moment */
     const ariane6_real_t t126 = t32 * (parameters[XX3R] - parameters[ZZ3R]) + parameters[XY3R] * t12
         - parameters[YZ3] * t8;
+    /* link j4: what it passes on */
     const ariane6_real_t t127 = t126 - parameters[XZ3] * (t76 - t68) - parameters[MX3R] * t72 + (t125
         + ARIANE6_C(-0.17) * t119);
-    const ariane6_real_t t128 = dq[1] * t4;
+    const ariane6_real_t t128 = dq[1] * t4; /* link j2: motion */
     const ariane6_real_t t129 = ARIANE6_C(-2.0) * t71;
+    /* link j2: force and moment */
     const ariane6_real_t t130 = parameters[XX2R] * t128 + parameters[ZZ2R] * t128 + parameters[XY2] * t129
         + parameters[XZ2R] * t64;
+    /* link j3: what it passes on */
     const ariane6_real_t t131 = t130 + parameters[YZ2] * (t60 - t61) + (t2 * t122 - t5 * t127);
+    /* link j4: what it passes on */
     const ariane6_real_t t132 = parameters[MX3R] * t120 - parameters[MY3R] * t12 + t119;
-    const ariane6_real_t t133 = ARIANE6_C(2.0) * t128;
+    const ariane6_real_t t133 = ARIANE6_C(2.0) * t128; /* link j2: motion */
+    /* link j2: force and moment */
     const ariane6_real_t t134 = t71 * (parameters[XX2R] - parameters[ZZ2R]) + parameters[XY2] * t133
         - parameters[YZ2] * t64;
-    const ariane6_real_t t135 = t1 * t1;
+    const ariane6_real_t t135 = t1 * t1; /* link j2: motion */
+    /* link j3: what it passes on */
     const ariane6_real_t t136 = t134 + parameters[XZ2R] * (t61 - t135) + (t5 * t122 + t2 * t127
         + ARIANE6_C(0.685) * t132);
+    /* link j2: what it passes on */
     const ariane6_real_t t137 = t0 * t131 + t3 * t136 + ARIANE6_C(0.18) * (parameters[MX2R] * t129
         - parameters[MY2] * t133 + t132);
+    /* joint j1: drive */
     const ariane6_real_t t139 = ARIANE6_SQRT(ARIANE6_C(0.0406334) * t138 + ARIANE6_C(0.10828541));
     const ariane6_real_t t141 = ARIANE6_C(0.061525739908548135) * t139 / t140;
     const ariane6_real_t t142 = ARIANE6_C(-1.0) / t139;
     const ariane6_real_t t143 = t140 * (ARIANE6_C(-4063.3400000000006) * t142) * dq[0];
-    const ariane6_real_t t144 = ariane6_sign(t143);
+    const ariane6_real_t t144 = ariane6_sign(t143); /* joint j1: coulomb_friction */
+    /* joint j1: drive */
     const ariane6_real_t t145 = ARIANE6_C(-4063.3400000000006) * t138
         + ARIANE6_C(-82.55365977800001) * (t142 * t142) * (t140 * t140);
     const ariane6_real_t t146 = parameters[FV1] * t143 + parameters[FC1] * t144
         - parameters[IA1] * (t142 * t145 * t57);
     out[0] = ARIANE6_C(250.0) * t146 + t141 * t137;
-    const ariane6_real_t t147 = t9 * t116 + t13 * t118;
+    const ariane6_real_t t147 = t9 * t116 + t13 * t118; /* link j4: what it passes on */
+    /* link j5: what it passes on */
     const ariane6_real_t t148 = parameters[MX4] * t100 - parameters[MY4R] * t30 + (t20 * t114 + t19 * t115);
+    /* link j4: what it passes on */
     const ariane6_real_t t149 = t13 * t105 + t9 * t111 + (ARIANE6_C(-0.17) * t148 + ARIANE6_C(-0.488) * t147);
+    /* link j3: force and moment */
     const ariane6_real_t t150 = parameters[XY3R] * (t76 - t67) - parameters[XX3R] * t8
         + (parameters[MX3R] * t75 + parameters[MY3R] * t66);
-    const ariane6_real_t t151 = t150 + t149;
+    const ariane6_real_t t151 = t150 + t149; /* link j4: what it passes on */
+    /* link j3: what it passes on */
     const ariane6_real_t t152 = t5 * (parameters[MY3R] * t8 - parameters[MX3R] * t69 + t147)
         + t2 * (parameters[MX3R] * t8 - parameters[MY3R] * t77 + t148);
+    /* link j2: force and moment */
     const ariane6_real_t t153 = parameters[XY2] * (t135 - t60) - parameters[XX2R] * t64
         + (parameters[MX2R] * t63 + parameters[MY2] * t59);
+    /* joint j2: drive */
     const ariane6_real_t t154 = ARIANE6_C(0.766044443118978) * t3 - ARIANE6_C(0.6427876096865393) * t0;
     const ariane6_real_t t155 = ARIANE6_SQRT(ARIANE6_C(-0.126918) * t154 + ARIANE6_C(0.420682));
     const ariane6_real_t t156 = ARIANE6_C(-0.766044443118978) * t0 + ARIANE6_C(-0.6427876096865393) * t3;
     const ariane6_real_t t157 = ARIANE6_C(-0.019697757607273984) * t155 / t156;
     const ariane6_real_t t158 = ARIANE6_C(1.0) / t155;
     const ariane6_real_t t159 = t156 * (ARIANE6_C(12691.800000000003) * t158) * dq[1];
-    const ariane6_real_t t160 = ariane6_sign(t159);
+    const ariane6_real_t t160 = ariane6_sign(t159); /* joint j2: coulomb_friction */
+    /* joint j2: drive */
     const ariane6_real_t t161 = ARIANE6_C(12691.800000000003) * t154
         + ARIANE6_C(-805.4089362000002) * (t158 * t158) * (t156 * t156);
     const ariane6_real_t t162 = parameters[IA2] * (t158 * t161 * t61) - (parameters[FV2] * t159
         + parameters[FC2] * t160);
     const ariane6_real_t t163 = ARIANE6_C(250.0) * t162 + t157 * (t153 + (t151 + ARIANE6_C(0.685) * t152));
     out[1] = t163;
+    /* joint j3: drive */
     const ariane6_real_t t164 = ARIANE6_C(0.052335956242943966) * t2 + ARIANE6_C(0.9986295347545738) * t5;
     const ariane6_real_t t165 = ARIANE6_SQRT(ARIANE6_C(-0.083776) * t164 + ARIANE6_C(0.38408000000000003));
     const ariane6_real_t t166 = ARIANE6_C(0.052335956242943966) * t5 - ARIANE6_C(0.9986295347545738) * t2;
     const ariane6_real_t t167 = ARIANE6_C(0.029841482047364396) * t165 / t166;
     const ariane6_real_t t168 = ARIANE6_C(1.0) / t165;
     const ariane6_real_t t169 = t166 * (ARIANE6_C(8377.600000000002) * t168) * dq[2];
-    const ariane6_real_t t170 = ariane6_sign(t169);
+    const ariane6_real_t t170 = ariane6_sign(t169); /* joint j3: coulomb_friction */
+    /* joint j3: drive */
     const ariane6_real_t t171 = ARIANE6_C(8377.600000000002) * t164
         + ARIANE6_C(-350.9209088000001) * (t168 * t168) * (t166 * t166);
     const ariane6_real_t t172 = parameters[FV3] * t169 + parameters[FC3] * t170
         + parameters[IA3] * (t168 * t171 * (dq[2] * dq[2]));
     out[2] = ARIANE6_C(250.0) * t172 + t167 * t151;
-    const ariane6_real_t t173 = ariane6_sign(dq[3]);
+    const ariane6_real_t t173 = ariane6_sign(dq[3]); /* joint j4: coulomb_friction */
     const ariane6_real_t t174 = ARIANE6_C(20.0) * (parameters[FV4] * (ARIANE6_C(1.0e2) * dq[3])
         + parameters[FC4] * t173) + ARIANE6_C(0.2) * t125;
     out[3] = t174;
+    /* joint j5: drive */
     const ariane6_real_t t175 = ARIANE6_SQRT(ARIANE6_C(0.035496) * t20 + ARIANE6_C(0.097));
     const ariane6_real_t t176 = ARIANE6_C(0.07043047103899029) * t175 / t19;
     const ariane6_real_t t177 = ARIANE6_C(-1.0) / t175;
     const ariane6_real_t t178 = t19 * (ARIANE6_C(-3549.6000000000004) * t177) * dq[4];
-    const ariane6_real_t t179 = ariane6_sign(t178);
+    const ariane6_real_t t179 = ariane6_sign(t178); /* joint j5: coulomb_friction */
+    /* joint j5: drive */
     const ariane6_real_t t180 = ARIANE6_C(-3549.6000000000004) * t20
         + ARIANE6_C(-62.9983008) * (t177 * t177) * (t19 * t19);
     const ariane6_real_t t181 = parameters[FV5] * t178 + parameters[FC5] * t179
         - parameters[IA5] * (t177 * t180 * (dq[4] * dq[4]));
     out[4] = ARIANE6_C(250.0) * t181 + t176 * t108;
-    const ariane6_real_t t182 = ariane6_sign(dq[5]);
+    const ariane6_real_t t182 = ariane6_sign(dq[5]); /* joint j6: coulomb_friction */
     const ariane6_real_t t183 = ARIANE6_C(20.0) * (parameters[FV6] * (ARIANE6_C(1.0e2) * dq[5])
         + parameters[FC6] * t182) + ARIANE6_C(0.2) * t96;
     out[5] = t183;

@@ -6,7 +6,7 @@
  * Arm ariane6, description ac2a59ce556c2f1c.
  * SPDX-License-Identifier: 0BSD
  *
- * Operations: 667 (373 mul, 294 add, 0 neg), 8 div, 4 sqrt, 12 trig, 6 other.
+ * Operations: 667 (373 mul, 294 add, 0 neg), 8 div, 4 sqrt, 12 trig, 6 other calls (sign, select and the like).
  *
  * @param[in]   q           [6]   [rad]    joint coordinates; norm at most 10000
  * @param[in]   dq          [6]   [rad/s]  joint velocities; norm at most 100000
@@ -105,11 +105,11 @@
  */
 #include "ariane6_private.h"
 
-#if ARIANE6_GENERATION != 0xBA206C14UL
+#if ARIANE6_GENERATION != 0x13CD28B3UL
 #error "ariane6.h and ariane6_bias_standard.c are of different generations: generate the arm again"
 #endif
 
-int ariane6_bias_standard(
+ariane6_status_t ariane6_bias_standard(
     const ariane6_real_t q[ARIANE6_N_JOINTS],
     const ariane6_real_t dq[ARIANE6_N_JOINTS],
     const ariane6_real_t parameters[ARIANE6_N_STANDARD_PARAMETERS],
@@ -119,7 +119,7 @@ int ariane6_bias_standard(
         M2, XX3, XY3, XZ3, YY3, YZ3, ZZ3, MX3, MY3, MZ3, M3, XX4, XY4, XZ4, YY4, YZ4, ZZ4, MX4, MY4, MZ4, M4,
         XX5, XY5, XZ5, YY5, YZ5, ZZ5, MX5, MY5, MZ5, M5, XX6, XY6, XZ6, YY6, YZ6, ZZ6, MX6, MY6, MZ6, M6, FV1,
         FC1, IA1, FV2, FC2, IA2, FV3, FC3, IA3, FV4, FC4, IA4, FV5, FC5, IA5, FV6, FC6, IA6 };
-    int status = ARIANE6_STATUS_OK;
+    ariane6_status_t status = ARIANE6_STATUS_OK;
 
     if (!ariane6_within_joints(q, ARIANE6_C(1.0e8))
         || !ariane6_within_joints(dq, ARIANE6_C(1.0e10))
@@ -149,66 +149,66 @@ int ariane6_bias_standard(
     ARIANE6_SINCOS(q[4], &t32, &t37);
     ariane6_real_t t57, t70;
     ARIANE6_SINCOS(q[5], &t57, &t70);
-    const ariane6_real_t t0 = dq[0] * dq[0];
-    const ariane6_real_t t1 = ARIANE6_C(0.18) * t0;
+    const ariane6_real_t t0 = dq[0] * dq[0]; /* link j1: motion */
+    const ariane6_real_t t1 = ARIANE6_C(0.18) * t0; /* link j2: motion */
     const ariane6_real_t t4 = t2 * t1 + ARIANE6_C(-9.81) * t3;
     const ariane6_real_t t5 = t2 * dq[0];
     const ariane6_real_t t6 = t5 * t5;
     const ariane6_real_t t7 = dq[1] * dq[1];
-    const ariane6_real_t t8 = t4 + ARIANE6_C(0.685) * (t6 + t7);
-    const ariane6_real_t t10 = t3 * t1 + ARIANE6_C(9.81) * t2;
+    const ariane6_real_t t8 = t4 + ARIANE6_C(0.685) * (t6 + t7); /* link j3: motion */
+    const ariane6_real_t t10 = t3 * t1 + ARIANE6_C(9.81) * t2; /* link j2: motion */
     const ariane6_real_t t11 = t3 * dq[0];
     const ariane6_real_t t12 = t11 * t5;
-    const ariane6_real_t t13 = t10 + ARIANE6_C(0.685) * t12;
+    const ariane6_real_t t13 = t10 + ARIANE6_C(0.685) * t12; /* link j3: motion */
     const ariane6_real_t t15 = t9 * t8 - t14 * t13;
     const ariane6_real_t t16 = t14 * t11 - t9 * t5;
     const ariane6_real_t t17 = t16 * t16;
     const ariane6_real_t t18 = dq[1] + dq[2];
     const ariane6_real_t t19 = t18 * t18;
-    const ariane6_real_t t20 = t19 + t17;
-    const ariane6_real_t t21 = t9 * t11 + t14 * t5;
+    const ariane6_real_t t20 = t19 + t17; /* link j4: motion */
+    const ariane6_real_t t21 = t9 * t11 + t14 * t5; /* link j3: motion */
     const ariane6_real_t t22 = t21 * t16;
-    const ariane6_real_t t23 = t15 - (ARIANE6_C(0.17) * t20 - ARIANE6_C(0.488) * t22);
-    const ariane6_real_t t25 = t18 * t21;
+    const ariane6_real_t t23 = t15 - (ARIANE6_C(0.17) * t20 - ARIANE6_C(0.488) * t22); /* link j4: motion */
+    const ariane6_real_t t25 = t18 * t21; /* link j3: motion */
     const ariane6_real_t t26 = t18 * t16;
-    const ariane6_real_t t27 = dq[1] * t11;
-    const ariane6_real_t t28 = ARIANE6_C(1.37) * t27;
-    const ariane6_real_t t29 = t28 + (ARIANE6_C(-0.34) * t25 + ARIANE6_C(-0.976) * t26);
+    const ariane6_real_t t27 = dq[1] * t11; /* link j2: motion */
+    const ariane6_real_t t28 = ARIANE6_C(1.37) * t27; /* link j3: motion */
+    const ariane6_real_t t29 = t28 + (ARIANE6_C(-0.34) * t25 + ARIANE6_C(-0.976) * t26); /* link j4: motion */
     const ariane6_real_t t31 = t24 * t23 + t30 * t29;
-    const ariane6_real_t t33 = t14 * t8 + t9 * t13;
+    const ariane6_real_t t33 = t14 * t8 + t9 * t13; /* link j3: motion */
     const ariane6_real_t t34 = t21 * t21;
-    const ariane6_real_t t35 = t19 + t34;
+    const ariane6_real_t t35 = t19 + t34; /* link j4: motion */
     const ariane6_real_t t36 = t33 + (ARIANE6_C(0.17) * t22 + ARIANE6_C(-0.488) * t35);
-    const ariane6_real_t t38 = t32 * t31 + t37 * t36;
-    const ariane6_real_t t39 = t24 * t21 - t30 * t18;
+    const ariane6_real_t t38 = t32 * t31 + t37 * t36; /* link j5: motion */
+    const ariane6_real_t t39 = t24 * t21 - t30 * t18; /* link j4: motion */
     const ariane6_real_t t40 = t16 - dq[3];
-    const ariane6_real_t t41 = t32 * t40 - t37 * t39;
+    const ariane6_real_t t41 = t32 * t40 - t37 * t39; /* link j5: motion */
     const ariane6_real_t t42 = t41 * t41;
-    const ariane6_real_t t43 = t24 * t18 + t30 * t21;
-    const ariane6_real_t t44 = dq[4] + t43;
+    const ariane6_real_t t43 = t24 * t18 + t30 * t21; /* link j4: motion */
+    const ariane6_real_t t44 = dq[4] + t43; /* link j5: motion */
     const ariane6_real_t t45 = t44 * t44;
-    const ariane6_real_t t46 = t42 + t45;
+    const ariane6_real_t t46 = t42 + t45; /* link j6: motion */
     const ariane6_real_t t47 = t38 + ARIANE6_C(-0.3) * t46;
-    const ariane6_real_t t48 = t37 * t31 - t32 * t36;
-    const ariane6_real_t t49 = ARIANE6_C(2.0) * t26;
+    const ariane6_real_t t48 = t37 * t31 - t32 * t36; /* link j5: motion */
+    const ariane6_real_t t49 = ARIANE6_C(2.0) * t26; /* link j4: motion */
     const ariane6_real_t t50 = t24 * t22 - t30 * t49;
     const ariane6_real_t t51 = t39 * t40;
     const ariane6_real_t t52 = t50 - t51;
-    const ariane6_real_t t53 = t32 * t39 + t37 * t40;
+    const ariane6_real_t t53 = t32 * t39 + t37 * t40; /* link j5: motion */
     const ariane6_real_t t54 = t41 * t53;
-    const ariane6_real_t t55 = t52 - t54;
+    const ariane6_real_t t55 = t52 - t54; /* link j6: motion */
     const ariane6_real_t t56 = t48 + ARIANE6_C(0.3) * t55;
-    const ariane6_real_t t58 = t24 * t29 - t30 * t23;
+    const ariane6_real_t t58 = t24 * t29 - t30 * t23; /* link j4: motion */
     const ariane6_real_t t59 = t30 * t22 + t24 * t49;
     const ariane6_real_t t60 = t43 * t40;
     const ariane6_real_t t61 = t59 - t60;
-    const ariane6_real_t t62 = t61 - t60;
-    const ariane6_real_t t63 = t39 * t43;
-    const ariane6_real_t t64 = t25 - t63;
+    const ariane6_real_t t62 = t61 - t60; /* link j5: motion */
+    const ariane6_real_t t63 = t39 * t43; /* link j4: motion */
+    const ariane6_real_t t64 = t25 - t63; /* link j5: motion */
     const ariane6_real_t t65 = t32 * t64 + t37 * t62;
     const ariane6_real_t t66 = t53 * t44;
     const ariane6_real_t t67 = t65 + t66;
-    const ariane6_real_t t68 = t66 + t67;
+    const ariane6_real_t t68 = t66 + t67; /* link j6: motion */
     const ariane6_real_t t69 = t58 + ARIANE6_C(-0.3) * t68;
     const ariane6_real_t t71 = t57 * t56 - t70 * t69;
     const ariane6_real_t t72 = t57 * t55 + t70 * t68;
@@ -220,185 +220,231 @@ int ariane6_bias_standard(
     const ariane6_real_t t78 = t70 * t41 + t57 * t44;
     const ariane6_real_t t79 = t78 * t74;
     const ariane6_real_t t80 = t77 + t79;
-    const ariane6_real_t t81 = t79 + t80;
+    const ariane6_real_t t81 = t79 + t80; /* link j6: force and moment */
     const ariane6_real_t t82 = parameters[XX6] * t76 + t75 * (parameters[YY6] - parameters[ZZ6])
         + parameters[XY6] * t81;
-    const ariane6_real_t t83 = t32 * t62 - t37 * t64;
+    const ariane6_real_t t83 = t32 * t62 - t37 * t64; /* link j5: motion */
     const ariane6_real_t t84 = t41 * t44;
     const ariane6_real_t t85 = t83 + t84;
-    const ariane6_real_t t86 = t78 * t73;
-    const ariane6_real_t t87 = t85 + t86;
-    const ariane6_real_t t88 = t73 * t73;
+    const ariane6_real_t t86 = t78 * t73; /* link j6: motion */
+    const ariane6_real_t t87 = t85 + t86; /* link j6: force and moment */
+    const ariane6_real_t t88 = t73 * t73; /* link j6: motion */
     const ariane6_real_t t89 = t74 * t74;
+    /* link j6: force and moment */
     const ariane6_real_t t90 = t82 - parameters[XZ6] * t87 - parameters[YZ6] * (t88 - t89)
         - (parameters[MY6] * t47 - parameters[MZ6] * t71);
-    const ariane6_real_t t91 = t70 * t56 + t57 * t69;
-    const ariane6_real_t t92 = t76 - t75;
+    const ariane6_real_t t91 = t70 * t56 + t57 * t69; /* link j6: motion */
+    const ariane6_real_t t92 = t76 - t75; /* link j6: force and moment */
     const ariane6_real_t t93 = parameters[YY6] * t80 - t79 * (parameters[XX6] - parameters[ZZ6])
         + parameters[XY6] * t92;
     const ariane6_real_t t94 = t86 - t85;
-    const ariane6_real_t t95 = t78 * t78;
+    const ariane6_real_t t95 = t78 * t78; /* link j6: motion */
+    /* link j6: force and moment */
     const ariane6_real_t t96 = t93 + parameters[YZ6] * t94 + parameters[XZ6] * (t95 - t89)
         + (parameters[MZ6] * t91 + parameters[MX6] * t47);
     const ariane6_real_t t97 = parameters[MX6] * (t88 + t89) - parameters[MY6] * t94 + parameters[MZ6] * t77;
     const ariane6_real_t t98 = parameters[M6] * t91 + t97;
     const ariane6_real_t t99 = parameters[MY6] * (t95 + t89) - parameters[MX6] * t87 - parameters[MZ6] * t72;
     const ariane6_real_t t100 = t99 - parameters[M6] * t71;
-    const ariane6_real_t t101 = t57 * t98 + t70 * t100;
-    const ariane6_real_t t102 = t84 + t85;
+    const ariane6_real_t t101 = t57 * t98 + t70 * t100; /* link j6: what it passes on */
+    const ariane6_real_t t102 = t84 + t85; /* link j6: motion */
+    /* link j5: force and moment */
     const ariane6_real_t t103 = parameters[XY5] * t102 - (parameters[XX5] * t67 + t66 * (parameters[ZZ5]
         - parameters[YY5]));
-    const ariane6_real_t t104 = t52 + t54;
-    const ariane6_real_t t105 = t53 * t53;
+    const ariane6_real_t t104 = t52 + t54; /* link j6: motion */
+    const ariane6_real_t t105 = t53 * t53; /* link j5: motion */
+    /* link j5: force and moment */
     const ariane6_real_t t106 = t103 + parameters[XZ5] * t104 + parameters[YZ5] * (t105 - t45)
         + (parameters[MY5] * t58 - parameters[MZ5] * t38);
+    /* link j6: what it passes on */
     const ariane6_real_t t107 = t106 + (t57 * t96 - t70 * t90 + ARIANE6_C(0.3) * t101);
+    /* link j5: force and moment */
     const ariane6_real_t t108 = parameters[YY5] * t85 + t84 * (parameters[ZZ5] - parameters[XX5])
         - parameters[XY5] * t68;
     const ariane6_real_t t109 = t108 + parameters[YZ5] * t55 + parameters[XZ5] * (t45 - t42)
         - (parameters[MZ5] * t48 + parameters[MX5] * t58);
+    /* link j6: force and moment */
     const ariane6_real_t t110 = parameters[ZZ6] * t85 - (parameters[XX6] - parameters[YY6]) * t86
         - parameters[YZ6] * t77;
     const ariane6_real_t t111 = t110 - parameters[XZ6] * t72 + parameters[XY6] * (t95 - t88)
         + (parameters[MX6] * t71 + parameters[MY6] * t91);
-    const ariane6_real_t t112 = t109 + t111;
-    const ariane6_real_t t113 = t52 - t51;
+    const ariane6_real_t t112 = t109 + t111; /* link j6: what it passes on */
+    const ariane6_real_t t113 = t52 - t51; /* link j5: motion */
+    /* link j4: force and moment */
     const ariane6_real_t t114 = parameters[XX4] * t61 + t60 * (parameters[YY4] - parameters[ZZ4])
         + parameters[XY4] * t113;
-    const ariane6_real_t t115 = t25 + t63;
-    const ariane6_real_t t116 = t43 * t43;
+    const ariane6_real_t t115 = t25 + t63; /* link j5: motion */
+    const ariane6_real_t t116 = t43 * t43; /* link j4: motion */
     const ariane6_real_t t117 = t40 * t40;
+    /* link j4: force and moment */
     const ariane6_real_t t118 = t114 + parameters[XZ4] * t115 - parameters[YZ4] * (t116 - t117)
         - (parameters[MY4] * t36 + parameters[MZ4] * t58);
-    const ariane6_real_t t119 = t118 + (t32 * t112 - t37 * t107);
-    const ariane6_real_t t120 = t57 * t100 - t70 * t98;
+    const ariane6_real_t t119 = t118 + (t32 * t112 - t37 * t107); /* link j5: what it passes on */
+    const ariane6_real_t t120 = t57 * t100 - t70 * t98; /* link j6: what it passes on */
+    /* link j5: force and moment */
     const ariane6_real_t t121 = parameters[ZZ5] * t52 - t54 * (parameters[XX5] - parameters[YY5])
         + parameters[YZ5] * t83;
     const ariane6_real_t t122 = t121 - parameters[XZ5] * t65 + parameters[XY5] * (t42 - t105)
         + (parameters[MX5] * t38 + parameters[MY5] * t48);
+    /* link j6: what it passes on */
     const ariane6_real_t t123 = t122 + (t57 * t90 + t70 * t96 + ARIANE6_C(-0.3) * t120);
+    /* link j4: force and moment */
     const ariane6_real_t t124 = parameters[YY4] * t52 + t51 * (parameters[XX4] - parameters[ZZ4])
         + parameters[XY4] * t62;
-    const ariane6_real_t t125 = t39 * t39;
+    const ariane6_real_t t125 = t39 * t39; /* link j4: motion */
+    /* link j4: force and moment */
     const ariane6_real_t t126 = t124 + parameters[YZ4] * t64 + parameters[XZ4] * (t125 - t117)
         + (parameters[MZ4] * t31 + parameters[MX4] * t36);
-    const ariane6_real_t t127 = t126 + t123;
+    const ariane6_real_t t127 = t126 + t123; /* link j5: what it passes on */
+    /* link j5: force and moment */
     const ariane6_real_t t128 = parameters[MZ5] * t83 - (parameters[MX5] * (t105 + t45)
         + parameters[MY5] * t55);
-    const ariane6_real_t t129 = t128 - parameters[M5] * t48 + t120;
+    const ariane6_real_t t129 = t128 - parameters[M5] * t48 + t120; /* link j6: what it passes on */
+    /* link j6: force and moment */
     const ariane6_real_t t130 = parameters[MY6] * t92 - parameters[MX6] * t81 + parameters[MZ6] * (t95 + t88);
+    /* link j5: force and moment */
     const ariane6_real_t t131 = parameters[M5] * t38 + (parameters[MX5] * t104 - parameters[MY5] * t46
         + parameters[MZ5] * t65);
-    const ariane6_real_t t132 = t131 + (parameters[M6] * t47 - t130);
+    const ariane6_real_t t132 = t131 + (parameters[M6] * t47 - t130); /* link j6: what it passes on */
+    /* link j4: force and moment */
     const ariane6_real_t t133 = parameters[MY4] * t64 - parameters[MX4] * (t116 + t117)
         - parameters[MZ4] * t50;
+    /* link j5: what it passes on */
     const ariane6_real_t t134 = t133 - parameters[M4] * t31 + (t37 * t129 - t32 * t132);
+    /* link j5: force and moment */
     const ariane6_real_t t135 = parameters[MX5] * t102 + parameters[MY5] * t68 + parameters[MZ5] * (t42
         + t105);
+    /* link j4: force and moment */
     const ariane6_real_t t136 = parameters[MX4] * t115 + parameters[MY4] * (t125 + t117)
         - parameters[MZ4] * t59;
+    /* link j5: what it passes on */
     const ariane6_real_t t137 = t135 - parameters[M5] * t58 - t101 - (parameters[M4] * t58 + t136);
-    const ariane6_real_t t138 = t30 * t134 + t24 * t137;
-    const ariane6_real_t t139 = ARIANE6_C(-2.0) * t25;
+    const ariane6_real_t t138 = t30 * t134 + t24 * t137; /* link j4: what it passes on */
+    const ariane6_real_t t139 = ARIANE6_C(-2.0) * t25; /* link j4: motion */
+    /* link j3: force and moment */
     const ariane6_real_t t140 = t26 * (parameters[YY3] - parameters[ZZ3]) - parameters[XX3] * t26
         + parameters[XY3] * t139;
     const ariane6_real_t t141 = t140 - parameters[XZ3] * t22 + parameters[YZ3] * (t17 - t19)
         + (parameters[MY3] * t28 - parameters[MZ3] * t33);
+    /* link j4: what it passes on */
     const ariane6_real_t t142 = t141 + (t30 * t127 - t24 * t119 + ARIANE6_C(-0.488) * t138);
+    /* link j4: force and moment */
     const ariane6_real_t t143 = parameters[ZZ4] * t25 + t63 * (parameters[YY4] - parameters[XX4])
         + parameters[YZ4] * t50;
     const ariane6_real_t t144 = parameters[XY4] * (t125 - t116) - (t143 + parameters[XZ4] * t59)
         + (parameters[MY4] * t31 - parameters[MX4] * t58);
-    const ariane6_real_t t145 = t144 + (t32 * t107 + t37 * t112);
+    const ariane6_real_t t145 = t144 + (t32 * t107 + t37 * t112); /* link j5: what it passes on */
+    /* link j3: force and moment */
     const ariane6_real_t t146 = parameters[YY3] * t25 - t25 * (parameters[XX3] - parameters[ZZ3])
         + parameters[XY3] * t49;
     const ariane6_real_t t147 = t146 - parameters[YZ3] * t22 - parameters[XZ3] * (t19 - t34)
         + (parameters[MZ3] * t15 + parameters[MX3] * t28);
-    const ariane6_real_t t148 = t147 - (t145 + ARIANE6_C(-0.17) * t138);
-    const ariane6_real_t t149 = dq[1] * t5;
+    const ariane6_real_t t148 = t147 - (t145 + ARIANE6_C(-0.17) * t138); /* link j4: what it passes on */
+    const ariane6_real_t t149 = dq[1] * t5; /* link j2: motion */
     const ariane6_real_t t150 = ARIANE6_C(-2.0) * t27;
+    /* link j2: force and moment */
     const ariane6_real_t t151 = t149 * parameters[XX2] + t149 * (parameters[ZZ2] - parameters[YY2])
         + t150 * parameters[XY2];
     const ariane6_real_t t152 = t151 + t12 * parameters[XZ2] + (t6 - t7) * parameters[YZ2]
         - t10 * parameters[MZ2];
+    /* link j3: force and moment */
     const ariane6_real_t t153 = parameters[MX3] * t139 + parameters[MY3] * t49 + parameters[MZ3] * (t34
         + t17);
-    const ariane6_real_t t154 = t153 - parameters[M3] * t28 + t138;
-    const ariane6_real_t t155 = ARIANE6_C(2.0) * t149;
+    const ariane6_real_t t154 = t153 - parameters[M3] * t28 + t138; /* link j4: what it passes on */
+    const ariane6_real_t t155 = ARIANE6_C(2.0) * t149; /* link j2: motion */
+    /* link j2: force and moment */
     const ariane6_real_t t156 = t27 * (parameters[XX2] - parameters[ZZ2]) - t27 * parameters[YY2]
         + t155 * parameters[XY2];
-    const ariane6_real_t t157 = t11 * t11;
+    const ariane6_real_t t157 = t11 * t11; /* link j2: motion */
+    /* link j2: force and moment */
     const ariane6_real_t t158 = t156 - t12 * parameters[YZ2] + (t7 - t157) * parameters[XZ2]
         - t4 * parameters[MZ2];
+    /* link j3: what it passes on */
     const ariane6_real_t t159 = t158 + (t14 * t142 - t9 * t148 + ARIANE6_C(0.685) * t154);
+    /* link j2: what it passes on */
     const ariane6_real_t t160 = t3 * (t152 + (t9 * t142 + t14 * t148)) + t2 * t159;
+    /* link j2: force and moment */
     const ariane6_real_t t161 = t150 * parameters[MX2] - t155 * parameters[MY2] + (t157
         + t6) * parameters[MZ2];
+    /* joint j1: drive */
     const ariane6_real_t t163 = ARIANE6_SQRT(ARIANE6_C(0.0406334) * t162 + ARIANE6_C(0.10828541));
     const ariane6_real_t t165 = ARIANE6_C(0.061525739908548135) * t163 / t164;
     const ariane6_real_t t166 = ARIANE6_C(-1.0) / t163;
     const ariane6_real_t t167 = t164 * (ARIANE6_C(-4063.3400000000006) * t166) * dq[0];
-    const ariane6_real_t t168 = ariane6_sign(t167);
+    const ariane6_real_t t168 = ariane6_sign(t167); /* joint j1: coulomb_friction */
+    /* joint j1: drive */
     const ariane6_real_t t169 = ARIANE6_C(-4063.3400000000006) * t162
         + ARIANE6_C(-82.55365977800001) * (t166 * t166) * (t164 * t164);
     const ariane6_real_t t170 = t167 * parameters[FV1] + t168 * parameters[FC1]
         - t166 * t169 * t0 * parameters[IA1];
     const ariane6_real_t t171 = ARIANE6_C(250.0) * t170 + t165 * (t160 + ARIANE6_C(0.18) * (t161 + t154));
     out[0] = t171;
-    const ariane6_real_t t172 = t24 * t134 - t30 * t137;
+    const ariane6_real_t t172 = t24 * t134 - t30 * t137; /* link j4: what it passes on */
+    /* link j4: force and moment */
     const ariane6_real_t t173 = parameters[MX4] * t113 - parameters[MY4] * t62 - parameters[MZ4] * (t125
         + t116);
+    /* link j5: what it passes on */
     const ariane6_real_t t174 = parameters[M4] * t36 + t173 + (t32 * t129 + t37 * t132);
+    /* link j4: what it passes on */
     const ariane6_real_t t175 = t30 * t119 + t24 * t127 + (ARIANE6_C(-0.17) * t174
         + ARIANE6_C(-0.488) * t172);
+    /* link j3: force and moment */
     const ariane6_real_t t176 = t22 * (parameters[XX3] - parameters[YY3]) + parameters[XY3] * (t34 - t17)
         + (parameters[MX3] * t33 + parameters[MY3] * t15);
-    const ariane6_real_t t177 = t176 + t175;
+    const ariane6_real_t t177 = t176 + t175; /* link j4: what it passes on */
     const ariane6_real_t t178 = t172 - (parameters[M3] * t15 + (parameters[MX3] * t20
         + parameters[MY3] * t22));
     const ariane6_real_t t179 = parameters[M3] * t33 - (parameters[MX3] * t22 + parameters[MY3] * t35) + t174;
+    /* link j2: force and moment */
     const ariane6_real_t t180 = t12 * (parameters[YY2] - parameters[XX2]) + (t157 - t6) * parameters[XY2]
         + (t10 * parameters[MX2] + t4 * parameters[MY2]);
+    /* link j3: what it passes on */
     const ariane6_real_t t181 = t180 + (t177 + ARIANE6_C(0.685) * (t14 * t178 + t9 * t179));
+    /* joint j2: drive */
     const ariane6_real_t t182 = ARIANE6_C(0.766044443118978) * t2 - ARIANE6_C(0.6427876096865393) * t3;
     const ariane6_real_t t183 = ARIANE6_SQRT(ARIANE6_C(-0.126918) * t182 + ARIANE6_C(0.420682));
     const ariane6_real_t t184 = ARIANE6_C(-0.766044443118978) * t3 + ARIANE6_C(-0.6427876096865393) * t2;
     const ariane6_real_t t185 = ARIANE6_C(-0.019697757607273984) * t183 / t184;
     const ariane6_real_t t186 = ARIANE6_C(1.0) / t183;
     const ariane6_real_t t187 = t184 * (ARIANE6_C(12691.800000000003) * t186) * dq[1];
-    const ariane6_real_t t188 = ariane6_sign(t187);
+    const ariane6_real_t t188 = ariane6_sign(t187); /* joint j2: coulomb_friction */
+    /* joint j2: drive */
     const ariane6_real_t t189 = ARIANE6_C(12691.800000000003) * t182
         + ARIANE6_C(-805.4089362000002) * (t186 * t186) * (t184 * t184);
     const ariane6_real_t t190 = t186 * t189 * t7 * parameters[IA2] - (t187 * parameters[FV2]
         + t188 * parameters[FC2]);
     out[1] = ARIANE6_C(250.0) * t190 + t185 * t181;
+    /* joint j3: drive */
     const ariane6_real_t t191 = ARIANE6_C(0.052335956242943966) * t9 + ARIANE6_C(0.9986295347545738) * t14;
     const ariane6_real_t t192 = ARIANE6_SQRT(ARIANE6_C(-0.083776) * t191 + ARIANE6_C(0.38408000000000003));
     const ariane6_real_t t193 = ARIANE6_C(0.052335956242943966) * t14 - ARIANE6_C(0.9986295347545738) * t9;
     const ariane6_real_t t194 = ARIANE6_C(0.029841482047364396) * t192 / t193;
     const ariane6_real_t t195 = ARIANE6_C(1.0) / t192;
     const ariane6_real_t t196 = t193 * (ARIANE6_C(8377.600000000002) * t195) * dq[2];
-    const ariane6_real_t t197 = ariane6_sign(t196);
+    const ariane6_real_t t197 = ariane6_sign(t196); /* joint j3: coulomb_friction */
+    /* joint j3: drive */
     const ariane6_real_t t198 = ARIANE6_C(8377.600000000002) * t191
         + ARIANE6_C(-350.9209088000001) * (t195 * t195) * (t193 * t193);
     const ariane6_real_t t199 = t196 * parameters[FV3] + t197 * parameters[FC3]
         + t195 * t198 * (dq[2] * dq[2]) * parameters[IA3];
     out[2] = ARIANE6_C(250.0) * t199 + t194 * t177;
-    const ariane6_real_t t200 = ariane6_sign(dq[3]);
+    const ariane6_real_t t200 = ariane6_sign(dq[3]); /* joint j4: coulomb_friction */
     const ariane6_real_t t201 = ARIANE6_C(20.0) * (ARIANE6_C(1.0e2) * dq[3] * parameters[FV4]
         + t200 * parameters[FC4]) + ARIANE6_C(0.2) * t145;
     out[3] = t201;
+    /* joint j5: drive */
     const ariane6_real_t t202 = ARIANE6_SQRT(ARIANE6_C(0.035496) * t32 + ARIANE6_C(0.097));
     const ariane6_real_t t203 = ARIANE6_C(0.07043047103899029) * t202 / t37;
     const ariane6_real_t t204 = ARIANE6_C(-1.0) / t202;
     const ariane6_real_t t205 = t37 * (ARIANE6_C(-3549.6000000000004) * t204) * dq[4];
-    const ariane6_real_t t206 = ariane6_sign(t205);
+    const ariane6_real_t t206 = ariane6_sign(t205); /* joint j5: coulomb_friction */
+    /* joint j5: drive */
     const ariane6_real_t t207 = ARIANE6_C(-3549.6000000000004) * t32
         + ARIANE6_C(-62.9983008) * (t204 * t204) * (t37 * t37);
     const ariane6_real_t t208 = t205 * parameters[FV5] + t206 * parameters[FC5]
         - t204 * t207 * (dq[4] * dq[4]) * parameters[IA5];
     out[4] = ARIANE6_C(250.0) * t208 + t203 * t123;
-    const ariane6_real_t t209 = ariane6_sign(dq[5]);
+    const ariane6_real_t t209 = ariane6_sign(dq[5]); /* joint j6: coulomb_friction */
     const ariane6_real_t t210 = ARIANE6_C(20.0) * (ARIANE6_C(1.0e2) * dq[5] * parameters[FV6]
         + t209 * parameters[FC6]) + ARIANE6_C(0.2) * t111;
     out[5] = t210;

@@ -8,16 +8,16 @@
  */
 #include "ariane6_private.h"
 
-#if ARIANE6_GENERATION != 0xBA206C14UL
+#if ARIANE6_GENERATION != 0x13CD28B3UL
 #error "ariane6.h and ariane6_check_parameters.c are of different generations: generate the arm again"
 #endif
 
-int ariane6_check_parameters(const ariane6_real_t parameters[ARIANE6_N_PARAMETERS])
+ariane6_status_t ariane6_check_parameters(const ariane6_real_t parameters[ARIANE6_N_PARAMETERS])
 {
     return ariane6_within(parameters, 54, ARIANE6_C(1.0e18)) ? ARIANE6_STATUS_OK : ARIANE6_STATUS_INPUT;
 }
 
-int ariane6_check_parameters_standard(const ariane6_real_t parameters[ARIANE6_N_STANDARD_PARAMETERS])
+ariane6_status_t ariane6_check_parameters_standard(const ariane6_real_t parameters[ARIANE6_N_STANDARD_PARAMETERS])
 {
     return ariane6_within(parameters, 78, ARIANE6_C(1.0e18)) ? ARIANE6_STATUS_OK : ARIANE6_STATUS_INPUT;
 }

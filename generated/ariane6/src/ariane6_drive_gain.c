@@ -8,8 +8,8 @@
  *
  * Operations: 32 (24 mul, 8 add, 0 neg), 4 div, 4 sqrt, 8 trig.
  *
- * @param[in]   q    [6]  [rad]            joint coordinates; norm at most 10000
- * @param[out]  out  [6]  [(N m) per (A)]  drive gains K
+ * @param[in]   q    [6]  [rad]        joint coordinates; norm at most 10000
+ * @param[out]  out  [6]  [N m per A]  drive gains K
  *
  * Coordinates:
  *
@@ -22,15 +22,15 @@
  */
 #include "ariane6_private.h"
 
-#if ARIANE6_GENERATION != 0xBA206C14UL
+#if ARIANE6_GENERATION != 0x13CD28B3UL
 #error "ariane6.h and ariane6_drive_gain.c are of different generations: generate the arm again"
 #endif
 
-int ariane6_drive_gain(
+ariane6_status_t ariane6_drive_gain(
     const ariane6_real_t q[ARIANE6_N_JOINTS],
     ariane6_real_t out[ARIANE6_N_JOINTS])
 {
-    int status = ARIANE6_STATUS_OK;
+    ariane6_status_t status = ARIANE6_STATUS_OK;
 
     if (!ariane6_within_joints(q, ARIANE6_C(1.0e8))) {
         status |= ARIANE6_STATUS_INPUT;
@@ -54,15 +54,18 @@ int ariane6_drive_gain(
     ARIANE6_SINCOS(q[2], &t9, &t10);
     ariane6_real_t t14, t17;
     ARIANE6_SINCOS(q[4], &t14, &t17);
+    /* joint j1: drive */
     const ariane6_real_t t1 = ARIANE6_SQRT(ARIANE6_C(0.0406334) * t0 + ARIANE6_C(0.10828541));
     const ariane6_real_t t2 = ARIANE6_C(1.0) / t1;
     out[0] = ARIANE6_C(0.004) * (t3 * (ARIANE6_C(4063.3400000000006) * t2));
+    /* joint j2: drive */
     const ariane6_real_t t6 = ARIANE6_SQRT(ARIANE6_C(0.126918) * (ARIANE6_C(-0.766044443118978) * t5
         + ARIANE6_C(0.6427876096865393) * t4) + ARIANE6_C(0.420682));
     const ariane6_real_t t7 = ARIANE6_C(1.0) / t6;
     const ariane6_real_t t8 = ARIANE6_C(0.004) * ((ARIANE6_C(0.766044443118978) * t4
         + ARIANE6_C(0.6427876096865393) * t5) * (ARIANE6_C(12691.800000000003) * t7));
     out[1] = t8;
+    /* joint j3: drive */
     const ariane6_real_t t11 = ARIANE6_SQRT(ARIANE6_C(0.083776) * (ARIANE6_C(-0.052335956242943966) * t10
         + ARIANE6_C(-0.9986295347545738) * t9) + ARIANE6_C(0.38408000000000003));
     const ariane6_real_t t12 = ARIANE6_C(1.0) / t11;
@@ -70,6 +73,7 @@ int ariane6_drive_gain(
         + ARIANE6_C(-0.9986295347545738) * t10) * (ARIANE6_C(8377.600000000002) * t12));
     out[2] = t13;
     out[3] = ARIANE6_C(5.0);
+    /* joint j5: drive */
     const ariane6_real_t t15 = ARIANE6_SQRT(ARIANE6_C(0.035496) * t14 + ARIANE6_C(0.097));
     const ariane6_real_t t16 = ARIANE6_C(1.0) / t15;
     out[4] = ARIANE6_C(0.004) * (t17 * (ARIANE6_C(3549.6000000000004) * t16));

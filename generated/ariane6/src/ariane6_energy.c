@@ -82,11 +82,11 @@
  */
 #include "ariane6_private.h"
 
-#if ARIANE6_GENERATION != 0xBA206C14UL
+#if ARIANE6_GENERATION != 0x13CD28B3UL
 #error "ariane6.h and ariane6_energy.c are of different generations: generate the arm again"
 #endif
 
-int ariane6_energy(
+ariane6_status_t ariane6_energy(
     const ariane6_real_t q[ARIANE6_N_JOINTS],
     const ariane6_real_t dq[ARIANE6_N_JOINTS],
     const ariane6_real_t parameters[ARIANE6_N_PARAMETERS],
@@ -96,7 +96,7 @@ int ariane6_energy(
     enum { ZZ1R = 0, XX2R, XY2, XZ2R, YZ2, ZZ2R, MX2R, MY2, XX3R, XY3R, XZ3, YZ3, ZZ3R, MX3R, MY3R, XX4R, XY4,
         XZ4, YZ4, ZZ4R, MX4, MY4R, XX5R, XY5, XZ5, YZ5, ZZ5R, MX5, MY5R, XX6R, XY6, XZ6R, YZ6R, ZZ6, MX6, MY6,
         FV1, FC1, IA1, FV2, FC2, IA2, FV3, FC3, IA3, FV4, FC4, IA4, FV5, FC5, IA5, FV6, FC6, IA6 };
-    int status = ARIANE6_STATUS_OK;
+    ariane6_status_t status = ARIANE6_STATUS_OK;
 
     if (!ariane6_within_joints(q, ARIANE6_C(1.0e8))
         || !ariane6_within_joints(dq, ARIANE6_C(1.0e10))
@@ -127,34 +127,35 @@ int ariane6_energy(
     ARIANE6_SINCOS(q[4], &t38, &t37);
     ariane6_real_t t49, t48;
     ARIANE6_SINCOS(q[5], &t49, &t48);
-    const ariane6_real_t t1 = t0 * dq[0];
+    const ariane6_real_t t1 = t0 * dq[0]; /* link j2: motion */
     const ariane6_real_t t3 = t2 * dq[0];
     const ariane6_real_t t4 = t1 * (parameters[XX2R] * t1 + parameters[XY2] * t3 + parameters[XZ2R] * dq[1]);
     const ariane6_real_t t5 = dq[1] * (parameters[XZ2R] * t1 + parameters[YZ2] * t3
         + parameters[ZZ2R] * dq[1]);
     const ariane6_real_t t6 = t4 + t3 * (parameters[XY2] * t1 + parameters[YZ2] * dq[1]) + t5;
-    const ariane6_real_t t7 = ARIANE6_C(-0.18) * dq[0];
+    const ariane6_real_t t7 = ARIANE6_C(-0.18) * dq[0]; /* link j2: velocity of its origin */
     const ariane6_real_t t8 = ARIANE6_C(0.5) * (dq[0] * (parameters[ZZ1R] * dq[0])) + ARIANE6_C(0.5) * t6
         + (parameters[MY2] * (t1 * t7) - parameters[MX2R] * (t3 * t7));
-    const ariane6_real_t t11 = t9 * t1 + t10 * t3;
+    const ariane6_real_t t11 = t9 * t1 + t10 * t3; /* link j3: motion */
     const ariane6_real_t t12 = t9 * t3 - t10 * t1;
     const ariane6_real_t t13 = dq[1] + dq[2];
     const ariane6_real_t t14 = t11 * (parameters[XX3R] * t11 + parameters[XY3R] * t12
         + parameters[XZ3] * t13);
     const ariane6_real_t t15 = t13 * (parameters[XZ3] * t11 + parameters[YZ3] * t12 + parameters[ZZ3R] * t13);
     const ariane6_real_t t16 = t14 + t12 * (parameters[XY3R] * t11 + parameters[YZ3] * t13) + t15;
-    const ariane6_real_t t17 = t7 + ARIANE6_C(-0.685) * t3;
+    const ariane6_real_t t17 = t7 + ARIANE6_C(-0.685) * t3; /* link j3: velocity of its origin */
     const ariane6_real_t t18 = ARIANE6_C(0.685) * dq[1];
     const ariane6_real_t t19 = t9 * t18;
     const ariane6_real_t t20 = t10 * t18;
     const ariane6_real_t t21 = parameters[MX3R] * (t13 * t19 - t12 * t17) + parameters[MY3R] * (t11 * t17
         - t13 * t20);
-    const ariane6_real_t t24 = t22 * t11 - t23 * t13;
+    const ariane6_real_t t24 = t22 * t11 - t23 * t13; /* link j4: motion */
     const ariane6_real_t t25 = t23 * t11 + t22 * t13;
     const ariane6_real_t t26 = dq[3] + t12;
     const ariane6_real_t t27 = t24 * (parameters[XX4R] * t24 - parameters[XY4] * t25 + parameters[XZ4] * t26);
     const ariane6_real_t t28 = t26 * (parameters[XZ4] * t24 - parameters[YZ4] * t25 + parameters[ZZ4R] * t26);
     const ariane6_real_t t29 = t27 - t25 * (parameters[XY4] * t24 + parameters[YZ4] * t26) + t28;
+    /* link j4: velocity of its origin */
     const ariane6_real_t t30 = t17 + (ARIANE6_C(0.488) * t11 + ARIANE6_C(0.17) * t12);
     const ariane6_real_t t31 = t20 - ARIANE6_C(0.488) * t13;
     const ariane6_real_t t32 = t23 * t31 + t22 * t30;
@@ -163,17 +164,17 @@ int ariane6_energy(
     const ariane6_real_t t35 = parameters[MX4] * (t25 * t33 - t26 * t32) + parameters[MY4R] * (t24 * t33
         + t26 * t34);
     const ariane6_real_t t36 = t8 + ARIANE6_C(0.5) * t16 + t21 + ARIANE6_C(0.5) * t29 + t35;
-    const ariane6_real_t t39 = t37 * t24 + t38 * t26;
+    const ariane6_real_t t39 = t37 * t24 + t38 * t26; /* link j5: motion */
     const ariane6_real_t t40 = t37 * t26 - t38 * t24;
     const ariane6_real_t t41 = dq[4] + t25;
     const ariane6_real_t t42 = t39 * (parameters[XX5R] * t39 + parameters[XY5] * t40 + parameters[XZ5] * t41);
     const ariane6_real_t t43 = t41 * (parameters[XZ5] * t39 + parameters[YZ5] * t40 + parameters[ZZ5R] * t41);
     const ariane6_real_t t44 = t42 + t40 * (parameters[XY5] * t39 + parameters[YZ5] * t41) + t43;
-    const ariane6_real_t t45 = t38 * t34 + t37 * t33;
+    const ariane6_real_t t45 = t38 * t34 + t37 * t33; /* link j5: velocity of its origin */
     const ariane6_real_t t46 = t37 * t34 - t38 * t33;
     const ariane6_real_t t47 = parameters[MX5] * (t41 * t45 - t40 * t32) + parameters[MY5R] * (t39 * t32
         + t41 * t46);
-    const ariane6_real_t t50 = t48 * t39 - t49 * t41;
+    const ariane6_real_t t50 = t48 * t39 - t49 * t41; /* link j6: motion */
     const ariane6_real_t t51 = t49 * t39 + t48 * t41;
     const ariane6_real_t t52 = dq[5] + t40;
     const ariane6_real_t t53 = t50 * (parameters[XX6R] * t50 - parameters[XY6] * t51
@@ -185,37 +186,41 @@ int ariane6_energy(
     const ariane6_real_t t57 = t50 * t45 + t52 * (t48 * t46 + t49 * t32);
     const ariane6_real_t t58 = t36 + ARIANE6_C(0.5) * t44 + t47 + ARIANE6_C(0.5) * t55
         + (parameters[MX6] * t56 + parameters[MY6] * t57);
+    /* joint j1: drive */
     const ariane6_real_t t60 = ARIANE6_SQRT(ARIANE6_C(0.0406334) * t59 + ARIANE6_C(0.10828541));
     const ariane6_real_t t61 = ARIANE6_C(1.0) / t60;
     const ariane6_real_t t63 = t62 * (ARIANE6_C(4063.3400000000006) * t61);
     const ariane6_real_t t64 = t58 + ARIANE6_C(0.5) * (parameters[IA1] * (t63 * t63) * (dq[0] * dq[0]));
+    /* joint j2: drive */
     const ariane6_real_t t65 = ARIANE6_SQRT(ARIANE6_C(0.126918) * (ARIANE6_C(-0.766044443118978) * t2
         + ARIANE6_C(0.6427876096865393) * t0) + ARIANE6_C(0.420682));
     const ariane6_real_t t66 = ARIANE6_C(1.0) / t65;
     const ariane6_real_t t67 = (ARIANE6_C(0.766044443118978) * t0
         + ARIANE6_C(0.6427876096865393) * t2) * (ARIANE6_C(12691.800000000003) * t66);
     const ariane6_real_t t68 = t64 + ARIANE6_C(0.5) * (parameters[IA2] * (t67 * t67) * (dq[1] * dq[1]));
+    /* joint j3: drive */
     const ariane6_real_t t69 = ARIANE6_SQRT(ARIANE6_C(0.083776) * (ARIANE6_C(-0.052335956242943966) * t9
         + ARIANE6_C(-0.9986295347545738) * t10) + ARIANE6_C(0.38408000000000003));
     const ariane6_real_t t70 = ARIANE6_C(1.0) / t69;
     const ariane6_real_t t71 = (ARIANE6_C(0.052335956242943966) * t10
         + ARIANE6_C(-0.9986295347545738) * t9) * (ARIANE6_C(8377.600000000002) * t70);
     const ariane6_real_t t72 = t68 + ARIANE6_C(0.5) * (parameters[IA3] * (t71 * t71) * (dq[2] * dq[2]));
+    /* joint j5: drive */
     const ariane6_real_t t73 = ARIANE6_SQRT(ARIANE6_C(0.035496) * t38 + ARIANE6_C(0.097));
     const ariane6_real_t t74 = ARIANE6_C(1.0) / t73;
     const ariane6_real_t t75 = t37 * (ARIANE6_C(3549.6000000000004) * t74);
     const ariane6_real_t t76 = t72 + ARIANE6_C(0.5) * (ARIANE6_C(1.0e4) * parameters[IA4] * (dq[3] * dq[3]))
         + ARIANE6_C(0.5) * (parameters[IA5] * (t75 * t75) * (dq[4] * dq[4]));
     kinetic[0] = t76 + ARIANE6_C(0.5) * (ARIANE6_C(1.0e4) * parameters[IA6] * (dq[5] * dq[5]));
-    const ariane6_real_t t77 = ARIANE6_C(9.81) * t0;
+    const ariane6_real_t t77 = ARIANE6_C(9.81) * t0; /* link j2: motion */
     const ariane6_real_t t78 = ARIANE6_C(9.81) * t2;
-    const ariane6_real_t t79 = t9 * t77 + t10 * t78;
+    const ariane6_real_t t79 = t9 * t77 + t10 * t78; /* link j3: motion */
     const ariane6_real_t t80 = t9 * t78 - t10 * t77;
     const ariane6_real_t t81 = parameters[MX2R] * t77 + parameters[MY2] * t78 + (parameters[MX3R] * t79
         + parameters[MY3R] * t80);
-    const ariane6_real_t t82 = t22 * t79;
+    const ariane6_real_t t82 = t22 * t79; /* link j4: motion */
     const ariane6_real_t t83 = t23 * t79;
-    const ariane6_real_t t84 = t37 * t82 + t38 * t80;
+    const ariane6_real_t t84 = t37 * t82 + t38 * t80; /* link j5: motion */
     const ariane6_real_t t85 = parameters[MX5] * t84 + parameters[MY5R] * (t37 * t80 - t38 * t82);
     const ariane6_real_t t86 = parameters[MX6] * (t48 * t84 - t49 * t83) - parameters[MY6] * (t49 * t84
         + t48 * t83);

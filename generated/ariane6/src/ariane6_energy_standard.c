@@ -106,11 +106,11 @@
  */
 #include "ariane6_private.h"
 
-#if ARIANE6_GENERATION != 0xBA206C14UL
+#if ARIANE6_GENERATION != 0x13CD28B3UL
 #error "ariane6.h and ariane6_energy_standard.c are of different generations: generate the arm again"
 #endif
 
-int ariane6_energy_standard(
+ariane6_status_t ariane6_energy_standard(
     const ariane6_real_t q[ARIANE6_N_JOINTS],
     const ariane6_real_t dq[ARIANE6_N_JOINTS],
     const ariane6_real_t parameters[ARIANE6_N_STANDARD_PARAMETERS],
@@ -121,7 +121,7 @@ int ariane6_energy_standard(
         M2, XX3, XY3, XZ3, YY3, YZ3, ZZ3, MX3, MY3, MZ3, M3, XX4, XY4, XZ4, YY4, YZ4, ZZ4, MX4, MY4, MZ4, M4,
         XX5, XY5, XZ5, YY5, YZ5, ZZ5, MX5, MY5, MZ5, M5, XX6, XY6, XZ6, YY6, YZ6, ZZ6, MX6, MY6, MZ6, M6, FV1,
         FC1, IA1, FV2, FC2, IA2, FV3, FC3, IA3, FV4, FC4, IA4, FV5, FC5, IA5, FV6, FC6, IA6 };
-    int status = ARIANE6_STATUS_OK;
+    ariane6_status_t status = ARIANE6_STATUS_OK;
 
     if (!ariane6_within_joints(q, ARIANE6_C(1.0e8))
         || !ariane6_within_joints(dq, ARIANE6_C(1.0e10))
@@ -152,19 +152,19 @@ int ariane6_energy_standard(
     ARIANE6_SINCOS(q[4], &t43, &t42);
     ariane6_real_t t57, t59;
     ARIANE6_SINCOS(q[5], &t57, &t59);
-    const ariane6_real_t t1 = t0 * dq[0];
+    const ariane6_real_t t1 = t0 * dq[0]; /* link j2: motion */
     const ariane6_real_t t4 = t3 * dq[0];
-    const ariane6_real_t t6 = t2 * t1 + t5 * t4;
+    const ariane6_real_t t6 = t2 * t1 + t5 * t4; /* link j3: motion */
     const ariane6_real_t t7 = t2 * t4 - t5 * t1;
     const ariane6_real_t t8 = dq[1] + dq[2];
     const ariane6_real_t t9 = t6 * (parameters[XX3] * t6 + parameters[XY3] * t7 + t8 * parameters[XZ3]);
     const ariane6_real_t t10 = t7 * (parameters[XY3] * t6 + parameters[YY3] * t7 + t8 * parameters[YZ3]);
     const ariane6_real_t t11 = t8 * (parameters[XZ3] * t6 + parameters[YZ3] * t7 + t8 * parameters[ZZ3]);
-    const ariane6_real_t t12 = ARIANE6_C(0.685) * dq[1];
+    const ariane6_real_t t12 = ARIANE6_C(0.685) * dq[1]; /* link j3: velocity of its origin */
     const ariane6_real_t t13 = t5 * t12;
     const ariane6_real_t t14 = t2 * t12;
-    const ariane6_real_t t15 = ARIANE6_C(0.18) * dq[0];
-    const ariane6_real_t t16 = t15 + ARIANE6_C(0.685) * t4;
+    const ariane6_real_t t15 = ARIANE6_C(0.18) * dq[0]; /* link j2: velocity of its origin */
+    const ariane6_real_t t16 = t15 + ARIANE6_C(0.685) * t4; /* link j3: velocity of its origin */
     const ariane6_real_t t17 = parameters[M3] * (t13 * t13 + t14 * t14 + t16 * t16);
     const ariane6_real_t t18 = t1 * (t1 * parameters[XX2] + t4 * parameters[XY2] + dq[1] * parameters[XZ2]);
     const ariane6_real_t t19 = t4 * (t1 * parameters[XY2] + t4 * parameters[YY2] + dq[1] * parameters[YZ2]);
@@ -177,13 +177,14 @@ int ariane6_energy_standard(
         + t8 * t13);
     const ariane6_real_t t24 = t22 + ARIANE6_C(0.5) * (t9 + t10 + t11 + t17) + (t23
         + parameters[MZ3] * (t7 * t13 - t6 * t14));
+    /* link j4: velocity of its origin */
     const ariane6_real_t t25 = t16 + (ARIANE6_C(-0.488) * t6 + ARIANE6_C(-0.17) * t7);
     const ariane6_real_t t27 = t13 - ARIANE6_C(0.488) * t8;
     const ariane6_real_t t29 = t28 * t27 + t26 * t25;
     const ariane6_real_t t30 = t28 * t25 - t26 * t27;
     const ariane6_real_t t31 = t30 * t30;
     const ariane6_real_t t32 = t14 + ARIANE6_C(-0.17) * t8;
-    const ariane6_real_t t33 = t28 * t6 - t26 * t8;
+    const ariane6_real_t t33 = t28 * t6 - t26 * t8; /* link j4: motion */
     const ariane6_real_t t34 = t28 * t8 + t26 * t6;
     const ariane6_real_t t35 = dq[3] + t7;
     const ariane6_real_t t36 = t33 * (parameters[XY4] * t34 - parameters[XX4] * t33 - parameters[XZ4] * t35);
@@ -193,24 +194,24 @@ int ariane6_energy_standard(
     const ariane6_real_t t40 = parameters[MX4] * (t35 * t30 + t34 * t32) + parameters[MY4] * (t33 * t32
         - t35 * t29);
     const ariane6_real_t t41 = t24 + ARIANE6_C(0.5) * t39 + (t40 - parameters[MZ4] * (t34 * t29 + t33 * t30));
-    const ariane6_real_t t44 = t42 * t33 + t43 * t35;
+    const ariane6_real_t t44 = t42 * t33 + t43 * t35; /* link j5: motion */
     const ariane6_real_t t45 = t43 * t33 - t42 * t35;
     const ariane6_real_t t46 = dq[4] + t34;
     const ariane6_real_t t47 = t44 * (parameters[XY5] * t45 - parameters[XX5] * t44 - parameters[XZ5] * t46);
     const ariane6_real_t t48 = t45 * (parameters[XY5] * t44 - parameters[YY5] * t45 + parameters[YZ5] * t46);
     const ariane6_real_t t49 = t46 * (parameters[XZ5] * t44 - parameters[YZ5] * t45 + parameters[ZZ5] * t46);
-    const ariane6_real_t t50 = t42 * t29 + t43 * t32;
+    const ariane6_real_t t50 = t42 * t29 + t43 * t32; /* link j5: velocity of its origin */
     const ariane6_real_t t51 = t43 * t29 - t42 * t32;
     const ariane6_real_t t52 = t51 * t51;
     const ariane6_real_t t53 = t49 - (t47 + t48) + parameters[M5] * (t31 + (t50 * t50 + t52));
     const ariane6_real_t t54 = parameters[MX5] * (t46 * t51 + t45 * t30) + parameters[MY5] * (t44 * t30
         + t46 * t50);
     const ariane6_real_t t55 = t41 + ARIANE6_C(0.5) * t53 + (parameters[MZ5] * (t44 * t51 - t45 * t50) - t54);
-    const ariane6_real_t t56 = t30 + ARIANE6_C(-0.3) * t44;
+    const ariane6_real_t t56 = t30 + ARIANE6_C(-0.3) * t44; /* link j6: velocity of its origin */
     const ariane6_real_t t58 = t50 + ARIANE6_C(-0.3) * t46;
     const ariane6_real_t t60 = t59 * t58 + t57 * t56;
     const ariane6_real_t t61 = t57 * t58 - t59 * t56;
-    const ariane6_real_t t62 = t57 * t46 - t59 * t44;
+    const ariane6_real_t t62 = t57 * t46 - t59 * t44; /* link j6: motion */
     const ariane6_real_t t63 = t57 * t44 + t59 * t46;
     const ariane6_real_t t64 = t45 - dq[5];
     const ariane6_real_t t65 = t62 * (parameters[XX6] * t62 + parameters[XY6] * t63 + parameters[XZ6] * t64);
@@ -220,41 +221,45 @@ int ariane6_energy_standard(
     const ariane6_real_t t69 = parameters[MX6] * (t64 * t61 - t63 * t51) + parameters[MY6] * (t62 * t51
         + t64 * t60);
     const ariane6_real_t t70 = t55 + ARIANE6_C(0.5) * t68 + (t69 - parameters[MZ6] * (t63 * t60 + t62 * t61));
+    /* joint j1: drive */
     const ariane6_real_t t72 = ARIANE6_SQRT(ARIANE6_C(0.0406334) * t71 + ARIANE6_C(0.10828541));
     const ariane6_real_t t73 = ARIANE6_C(1.0) / t72;
     const ariane6_real_t t75 = t74 * (ARIANE6_C(4063.3400000000006) * t73);
     const ariane6_real_t t76 = t70 + ARIANE6_C(0.5) * (dq[0] * dq[0] * (t75 * t75 * parameters[IA1]));
+    /* joint j2: drive */
     const ariane6_real_t t77 = ARIANE6_SQRT(ARIANE6_C(0.126918) * (ARIANE6_C(-0.766044443118978) * t3
         + ARIANE6_C(0.6427876096865393) * t0) + ARIANE6_C(0.420682));
     const ariane6_real_t t78 = ARIANE6_C(1.0) / t77;
     const ariane6_real_t t79 = (ARIANE6_C(0.766044443118978) * t0
         + ARIANE6_C(0.6427876096865393) * t3) * (ARIANE6_C(12691.800000000003) * t78);
     const ariane6_real_t t80 = t76 + ARIANE6_C(0.5) * (dq[1] * dq[1] * (t79 * t79 * parameters[IA2]));
+    /* joint j3: drive */
     const ariane6_real_t t81 = ARIANE6_SQRT(ARIANE6_C(0.083776) * (ARIANE6_C(-0.052335956242943966) * t2
         + ARIANE6_C(-0.9986295347545738) * t5) + ARIANE6_C(0.38408000000000003));
     const ariane6_real_t t82 = ARIANE6_C(1.0) / t81;
     const ariane6_real_t t83 = (ARIANE6_C(0.052335956242943966) * t5
         + ARIANE6_C(-0.9986295347545738) * t2) * (ARIANE6_C(8377.600000000002) * t82);
     const ariane6_real_t t84 = t80 + ARIANE6_C(0.5) * (dq[2] * dq[2] * (t83 * t83 * parameters[IA3]));
+    /* joint j5: drive */
     const ariane6_real_t t85 = ARIANE6_SQRT(ARIANE6_C(0.035496) * t43 + ARIANE6_C(0.097));
     const ariane6_real_t t86 = ARIANE6_C(1.0) / t85;
     const ariane6_real_t t87 = t42 * (ARIANE6_C(3549.6000000000004) * t86);
     const ariane6_real_t t88 = t84 + ARIANE6_C(0.5) * (dq[3] * dq[3] * (ARIANE6_C(1.0e4) * parameters[IA4]))
         + ARIANE6_C(0.5) * (dq[4] * dq[4] * (t87 * t87 * parameters[IA5]));
     kinetic[0] = t88 + ARIANE6_C(0.5) * (dq[5] * dq[5] * (ARIANE6_C(1.0e4) * parameters[IA6]));
-    const ariane6_real_t t89 = ARIANE6_C(9.81) * t0;
+    const ariane6_real_t t89 = ARIANE6_C(9.81) * t0; /* link j2: motion */
     const ariane6_real_t t90 = ARIANE6_C(9.81) * t3;
-    const ariane6_real_t t91 = t2 * t89 + t5 * t90;
-    const ariane6_real_t t92 = t28 * t91;
+    const ariane6_real_t t91 = t2 * t89 + t5 * t90; /* link j3: motion */
+    const ariane6_real_t t92 = t28 * t91; /* link j4: motion */
     const ariane6_real_t t93 = t26 * t91;
-    const ariane6_real_t t94 = t2 * t90 - t5 * t89;
+    const ariane6_real_t t94 = t2 * t90 - t5 * t89; /* link j3: motion */
     const ariane6_real_t t95 = ARIANE6_C(6.719850000000001) * t0;
     const ariane6_real_t t96 = t95 + (ARIANE6_C(-0.17) * t91 + ARIANE6_C(0.488) * t94);
     const ariane6_real_t t97 = t92 * parameters[MX4] - t93 * parameters[MY4] + t94 * parameters[MZ4]
         + parameters[M4] * t96;
     const ariane6_real_t t98 = ARIANE6_C(9.81) * parameters[MZ1] + (t89 * parameters[MX2]
         + t90 * parameters[MY2]) + (t91 * parameters[MX3] + t94 * parameters[MY3] + parameters[M3] * t95);
-    const ariane6_real_t t99 = t42 * t92 + t43 * t94;
+    const ariane6_real_t t99 = t42 * t92 + t43 * t94; /* link j5: motion */
     const ariane6_real_t t100 = t42 * t94 - t43 * t92;
     const ariane6_real_t t101 = t99 * parameters[MX5] + t100 * parameters[MY5] + t93 * parameters[MZ5]
         + parameters[M5] * t96;

@@ -7,7 +7,7 @@
  * Arm ariane6, description ac2a59ce556c2f1c.
  * SPDX-License-Identifier: 0BSD
  *
- * Operations: 4123 (2359 mul, 1758 add, 6 neg), 22 div, 4 sqrt, 12 trig, 10 other.
+ * Operations: 4123 (2359 mul, 1758 add, 6 neg), 22 div, 4 sqrt, 12 trig, 10 other calls (sign, select and the like).
  *
  * @param[in]   q             [6]   [rad]                    joint coordinates; norm at most 10000
  * @param[in]   dq            [6]   [rad/s]                  joint velocities; norm at most 100000
@@ -15,9 +15,9 @@
  *                                                           norm at most 1e+09
  * @param[in]   parameters    [54]                           base parameters; norm at most 1e+09
  * @param[out]  ddq           [6]   [rad/s^2]                joint accelerations
- * @param[out]  ddq_by_q      [36]  [(rad/s^2) per (rad)]    d ddq / d q; 6 x 6, row-major
+ * @param[out]  ddq_by_q      [36]  [(rad/s^2) per rad]      d ddq / d q; 6 x 6, row-major
  * @param[out]  ddq_by_dq     [36]  [(rad/s^2) per (rad/s)]  d ddq / d dq; 6 x 6, row-major
- * @param[out]  ddq_by_input  [36]  [(rad/s^2) per (A)]      d ddq / d input; 6 x 6, row-major
+ * @param[out]  ddq_by_input  [36]  [(rad/s^2) per A]        d ddq / d input; 6 x 6, row-major
  *
  * Coordinates:
  *
@@ -87,11 +87,11 @@
  */
 #include "ariane6_private.h"
 
-#if ARIANE6_GENERATION != 0xBA206C14UL
+#if ARIANE6_GENERATION != 0x13CD28B3UL
 #error "ariane6.h and ariane6_forward_dynamics_derivatives.c are of different generations: generate the arm again"
 #endif
 
-int ariane6_forward_dynamics_derivatives(
+ariane6_status_t ariane6_forward_dynamics_derivatives(
     const ariane6_real_t q[ARIANE6_N_JOINTS],
     const ariane6_real_t dq[ARIANE6_N_JOINTS],
     const ariane6_real_t input[ARIANE6_N_JOINTS],
@@ -104,7 +104,7 @@ int ariane6_forward_dynamics_derivatives(
     enum { ZZ1R = 0, XX2R, XY2, XZ2R, YZ2, ZZ2R, MX2R, MY2, XX3R, XY3R, XZ3, YZ3, ZZ3R, MX3R, MY3R, XX4R, XY4,
         XZ4, YZ4, ZZ4R, MX4, MY4R, XX5R, XY5, XZ5, YZ5, ZZ5R, MX5, MY5R, XX6R, XY6, XZ6R, YZ6R, ZZ6, MX6, MY6,
         FV1, FC1, IA1, FV2, FC2, IA2, FV3, FC3, IA3, FV4, FC4, IA4, FV5, FC5, IA5, FV6, FC6, IA6 };
-    int status = ARIANE6_STATUS_OK;
+    ariane6_status_t status = ARIANE6_STATUS_OK;
 
     if (!ariane6_within_joints(q, ARIANE6_C(1.0e8))
         || !ariane6_within_joints(dq, ARIANE6_C(1.0e10))
@@ -146,14 +146,16 @@ int ariane6_forward_dynamics_derivatives(
         ariane6_zero(ddq_by_input, 36);
         return ARIANE6_STATUS_PIVOT;
     }
+    /* link j6: inertia of it and all beyond */
     const ariane6_real_t t3 = t1 * parameters[XX6R] - parameters[XY6] * (ARIANE6_C(2.0) * t2);
     const ariane6_real_t t4 = t1 * t3;
     const ariane6_real_t t5 = parameters[ZZ5R] + (parameters[XX6R] - t4);
-    const ariane6_real_t t7 = ARIANE6_SQRT(ARIANE6_C(0.035496) * t6 + ARIANE6_C(0.097));
+    const ariane6_real_t t7 = ARIANE6_SQRT(ARIANE6_C(0.035496) * t6 + ARIANE6_C(0.097)); /* joint j5: drive */
     const ariane6_real_t t8 = ARIANE6_C(-1.0) / t7;
     const ariane6_real_t t9 = ARIANE6_C(-3549.6000000000004) * t8;
     const ariane6_real_t t11 = t10 * t9;
     const ariane6_real_t t12 = t5 + parameters[IA5] * (t11 * t11);
+    /* link j6: column of the mass matrix */
     const ariane6_real_t t13 = t2 * parameters[XZ6R] + t1 * parameters[YZ6R];
     const ariane6_real_t t14 = ARIANE6_C(1.0) / t0;
     const ariane6_real_t t15 = t13 * t14;
@@ -173,16 +175,19 @@ int ariane6_forward_dynamics_derivatives(
         ariane6_zero(ddq_by_input, 36);
         return ARIANE6_STATUS_PIVOT;
     }
+    /* link j6: inertia of it and all beyond */
     const ariane6_real_t t18 = parameters[XY6] + t2 * t3 - parameters[XZ5];
     const ariane6_real_t t19 = t13 - parameters[YZ5];
-    const ariane6_real_t t20 = t6 * t18 + t10 * t19;
+    const ariane6_real_t t20 = t6 * t18 + t10 * t19; /* link j5: column of the mass matrix */
+    /* link j6: column of the mass matrix */
     const ariane6_real_t t21 = t1 * parameters[XZ6R] - t2 * parameters[YZ6R];
     const ariane6_real_t t22 = t6 * t21 + t10 * parameters[ZZ6];
     const ariane6_real_t t23 = t20 - t22 * t15;
     const ariane6_real_t t24 = ARIANE6_C(1.0) / t16;
     const ariane6_real_t t25 = t23 * t24;
-    const ariane6_real_t t26 = parameters[XX5R] + t4;
+    const ariane6_real_t t26 = parameters[XX5R] + t4; /* link j6: inertia of it and all beyond */
     const ariane6_real_t t27 = parameters[XY5] + t21;
+    /* link j5: inertia of it and all beyond */
     const ariane6_real_t t28 = t10 * (parameters[ZZ6] - t26) + t27 * (ARIANE6_C(2.0) * t6);
     const ariane6_real_t t29 = t10 * t28;
     const ariane6_real_t t30 = parameters[ZZ4R] + (t26 + t29);
@@ -205,21 +210,25 @@ int ariane6_forward_dynamics_derivatives(
         return ARIANE6_STATUS_PIVOT;
     }
     const ariane6_real_t t35 = t29 - parameters[ZZ6] - parameters[XX4R];
-    const ariane6_real_t t37 = t6 * t19 - t10 * t18;
-    const ariane6_real_t t38 = parameters[XY4] - t37;
+    const ariane6_real_t t37 = t6 * t19 - t10 * t18; /* link j5: column of the mass matrix */
+    const ariane6_real_t t38 = parameters[XY4] - t37; /* link j5: inertia of it and all beyond */
+    /* link j4: inertia of it and all beyond */
     const ariane6_real_t t40 = t36 * (t5 + t35) + t38 * (ARIANE6_C(2.0) * t39);
     const ariane6_real_t t41 = t36 * t40;
+    /* link j6: column of the mass matrix */
     const ariane6_real_t t42 = t1 * parameters[MY6] + t2 * parameters[MX6];
-    const ariane6_real_t t43 = parameters[MY4R] + t42;
+    const ariane6_real_t t43 = parameters[MY4R] + t42; /* link j5: inertia of it and all beyond */
+    /* link j6: column of the mass matrix */
     const ariane6_real_t t44 = t1 * parameters[MX6] - t2 * parameters[MY6];
-    const ariane6_real_t t45 = parameters[MX5] + t44;
-    const ariane6_real_t t46 = t6 * parameters[MY5R] - t10 * t45;
-    const ariane6_real_t t47 = t46 - parameters[MX4];
-    const ariane6_real_t t48 = t39 * t43 + t36 * t47;
-    const ariane6_real_t t49 = ARIANE6_C(0.34) * t48;
-    const ariane6_real_t t50 = t10 * parameters[MY5R] + t6 * t45;
-    const ariane6_real_t t51 = ARIANE6_C(0.976) * t50;
+    const ariane6_real_t t45 = parameters[MX5] + t44; /* link j6: inertia of it and all beyond */
+    const ariane6_real_t t46 = t6 * parameters[MY5R] - t10 * t45; /* link j5: column of the mass matrix */
+    const ariane6_real_t t47 = t46 - parameters[MX4]; /* link j5: inertia of it and all beyond */
+    const ariane6_real_t t48 = t39 * t43 + t36 * t47; /* link j4: column of the mass matrix */
+    const ariane6_real_t t49 = ARIANE6_C(0.34) * t48; /* link j4: inertia of it and all beyond */
+    const ariane6_real_t t50 = t10 * parameters[MY5R] + t6 * t45; /* link j5: column of the mass matrix */
+    const ariane6_real_t t51 = ARIANE6_C(0.976) * t50; /* link j4: inertia of it and all beyond */
     const ariane6_real_t t52 = parameters[ZZ3R] + (t41 - t35 + (t49 + t51));
+    /* joint j3: drive */
     const ariane6_real_t t55 = ARIANE6_C(0.052335956242943966) * t53 + ARIANE6_C(-0.9986295347545738) * t54;
     const ariane6_real_t t56 = ARIANE6_C(0.052335956242943966) * t54 + ARIANE6_C(0.9986295347545738) * t53;
     const ariane6_real_t t57 = ARIANE6_SQRT(ARIANE6_C(-0.083776) * t56 + ARIANE6_C(0.38408000000000003));
@@ -227,19 +236,19 @@ int ariane6_forward_dynamics_derivatives(
     const ariane6_real_t t59 = ARIANE6_C(8377.600000000002) * t58;
     const ariane6_real_t t60 = t55 * t59;
     const ariane6_real_t t61 = t52 + parameters[IA3] * (t60 * t60);
-    const ariane6_real_t t62 = t10 * t21 - t6 * parameters[ZZ6];
+    const ariane6_real_t t62 = t10 * t21 - t6 * parameters[ZZ6]; /* link j6: column of the mass matrix */
     const ariane6_real_t t63 = t10 * t42;
     const ariane6_real_t t64 = t36 * t63 + t39 * t44;
     const ariane6_real_t t65 = t6 * t42;
     const ariane6_real_t t66 = ARIANE6_C(0.17) * t65 + ARIANE6_C(0.488) * t64 - (t39 * t62 + t36 * t13);
     const ariane6_real_t t67 = t66 * t14;
-    const ariane6_real_t t68 = t36 * t50;
+    const ariane6_real_t t68 = t36 * t50; /* link j5: column of the mass matrix */
     const ariane6_real_t t69 = t36 * t5 - t39 * t37 + (ARIANE6_C(0.17) * t46 + ARIANE6_C(0.488) * t68);
     const ariane6_real_t t70 = t69 + t66 * t15;
     const ariane6_real_t t71 = t70 * t24;
-    const ariane6_real_t t72 = t6 * t28 - t27 - parameters[XZ4];
+    const ariane6_real_t t72 = t6 * t28 - t27 - parameters[XZ4]; /* link j5: inertia of it and all beyond */
     const ariane6_real_t t73 = parameters[YZ4] + t20;
-    const ariane6_real_t t74 = t36 * t43 - t39 * t47;
+    const ariane6_real_t t74 = t36 * t43 - t39 * t47; /* link j4: column of the mass matrix */
     const ariane6_real_t t75 = t36 * t73 - t39 * t72 - ARIANE6_C(0.488) * t74;
     const ariane6_real_t t76 = t75 + t66 * t32 - t70 * t25;
     const ariane6_real_t t77 = ARIANE6_C(1.0) / t33;
@@ -260,11 +269,12 @@ int ariane6_forward_dynamics_derivatives(
         ariane6_zero(ddq_by_input, 36);
         return ARIANE6_STATUS_PIVOT;
     }
-    const ariane6_real_t t81 = t48 - parameters[MX3R];
+    const ariane6_real_t t81 = t48 - parameters[MX3R]; /* link j4: inertia of it and all beyond */
     const ariane6_real_t t82 = parameters[MY3R] + t50;
-    const ariane6_real_t t83 = t53 * t82 + t54 * t81;
-    const ariane6_real_t t84 = ARIANE6_C(-1.37) * t83;
+    const ariane6_real_t t83 = t53 * t82 + t54 * t81; /* link j3: column of the mass matrix */
+    const ariane6_real_t t84 = ARIANE6_C(-1.37) * t83; /* link j3: inertia of it and all beyond */
     const ariane6_real_t t85 = parameters[ZZ2R] + (t52 + t84);
+    /* joint j2: drive */
     const ariane6_real_t t88 = ARIANE6_C(0.766044443118978) * t86 + ARIANE6_C(0.6427876096865393) * t87;
     const ariane6_real_t t89 = ARIANE6_C(0.766044443118978) * t87 - ARIANE6_C(0.6427876096865393) * t86;
     const ariane6_real_t t90 = ARIANE6_SQRT(ARIANE6_C(-0.126918) * t89 + ARIANE6_C(0.420682));
@@ -272,20 +282,20 @@ int ariane6_forward_dynamics_derivatives(
     const ariane6_real_t t92 = ARIANE6_C(12691.800000000003) * t91;
     const ariane6_real_t t93 = t88 * t92;
     const ariane6_real_t t94 = t85 + parameters[IA2] * (t93 * t93);
-    const ariane6_real_t t95 = t53 * t64 + t54 * t65;
+    const ariane6_real_t t95 = t53 * t64 + t54 * t65; /* link j6: column of the mass matrix */
     const ariane6_real_t t96 = t66 + ARIANE6_C(-0.685) * t95;
     const ariane6_real_t t97 = t96 * t14;
-    const ariane6_real_t t98 = t53 * t68 + t54 * t46;
+    const ariane6_real_t t98 = t53 * t68 + t54 * t46; /* link j5: column of the mass matrix */
     const ariane6_real_t t99 = t69 + ARIANE6_C(-0.685) * t98;
     const ariane6_real_t t100 = t99 + t96 * t15;
     const ariane6_real_t t101 = t100 * t24;
-    const ariane6_real_t t102 = t53 * t74;
+    const ariane6_real_t t102 = t53 * t74; /* link j4: column of the mass matrix */
     const ariane6_real_t t103 = t75 + ARIANE6_C(0.685) * t102;
     const ariane6_real_t t104 = t103 + t96 * t32 - t100 * t25;
     const ariane6_real_t t105 = t104 * t77;
     const ariane6_real_t t106 = t94 - t96 * t97 - t100 * t101 - t104 * t105;
     const ariane6_real_t t107 = ARIANE6_C(1.0) / t79;
-    const ariane6_real_t t108 = ARIANE6_C(0.685) * t83 - t52;
+    const ariane6_real_t t108 = ARIANE6_C(0.685) * t83 - t52; /* link j3: column of the mass matrix */
     const ariane6_real_t t109 = t108 + t96 * t67 + t100 * t71 + t104 * t78;
     const ariane6_real_t t110 = t109 * t107;
     const ariane6_real_t t111 = ariane6_bounded(t106 - t109 * t110);
@@ -304,41 +314,47 @@ int ariane6_forward_dynamics_derivatives(
         ariane6_zero(ddq_by_input, 36);
         return ARIANE6_STATUS_PIVOT;
     }
-    const ariane6_real_t t113 = t30 + t49;
+    const ariane6_real_t t113 = t30 + t49; /* link j4: inertia of it and all beyond */
     const ariane6_real_t t114 = parameters[XX3R] + (t5 - t41 + t51);
-    const ariane6_real_t t115 = t36 * t72 + t39 * t73;
+    const ariane6_real_t t115 = t36 * t72 + t39 * t73; /* link j4: column of the mass matrix */
     const ariane6_real_t t116 = ARIANE6_C(-0.488) * t48;
+    /* link j4: inertia of it and all beyond */
     const ariane6_real_t t117 = t115 + (t116 + ARIANE6_C(-0.17) * t50) - parameters[XY3R];
+    /* link j3: inertia of it and all beyond */
     const ariane6_real_t t118 = t54 * (t114 - t113) - t117 * (ARIANE6_C(-2.0) * t53);
     const ariane6_real_t t119 = t54 * t118;
     const ariane6_real_t t120 = t114 - t119 + t84;
     const ariane6_real_t t121 = parameters[XX2R] + (t113 + t119);
-    const ariane6_real_t t122 = t53 * t81 - t54 * t82;
+    const ariane6_real_t t122 = t53 * t81 - t54 * t82; /* link j3: column of the mass matrix */
+    /* link j3: inertia of it and all beyond */
     const ariane6_real_t t123 = parameters[XY2] + (t53 * t118 - t117 + ARIANE6_C(0.685) * t122);
+    /* link j2: inertia of it and all beyond */
     const ariane6_real_t t124 = t87 * (t87 * (t120 - t121) + t123 * (ARIANE6_C(2.0) * t86));
-    const ariane6_real_t t125 = t122 - parameters[MY2];
+    const ariane6_real_t t125 = t122 - parameters[MY2]; /* link j3: inertia of it and all beyond */
     const ariane6_real_t t126 = t83 - parameters[MX2R];
+    /* link j2: inertia of it and all beyond */
     const ariane6_real_t t127 = t121 + t124 + ARIANE6_C(0.36) * (t86 * t125 - t87 * t126);
+    /* joint j1: drive */
     const ariane6_real_t t129 = ARIANE6_SQRT(ARIANE6_C(0.0406334) * t128 + ARIANE6_C(0.10828541));
     const ariane6_real_t t130 = ARIANE6_C(1.0) / t129;
     const ariane6_real_t t131 = ARIANE6_C(-4063.3400000000006) * t130;
     const ariane6_real_t t133 = t132 * t131;
     const ariane6_real_t t134 = parameters[ZZ1R] + t127 + parameters[IA1] * (t133 * t133);
-    const ariane6_real_t t135 = t39 * t63 - t36 * t44;
+    const ariane6_real_t t135 = t39 * t63 - t36 * t44; /* link j6: column of the mass matrix */
     const ariane6_real_t t136 = t36 * t62 - t39 * t13 + ARIANE6_C(0.488) * t135;
     const ariane6_real_t t137 = t22 + ARIANE6_C(0.17) * t135;
     const ariane6_real_t t138 = t53 * t137 - t54 * t136;
     const ariane6_real_t t139 = t53 * t136 + t54 * t137 + ARIANE6_C(-0.685) * t135;
     const ariane6_real_t t140 = t87 * t139 - t86 * t138 + ARIANE6_C(-0.18) * t135;
     const ariane6_real_t t141 = t140 * t14;
-    const ariane6_real_t t142 = t39 * t50;
+    const ariane6_real_t t142 = t39 * t50; /* link j5: column of the mass matrix */
     const ariane6_real_t t143 = t36 * t37 + t39 * t5 + ARIANE6_C(0.488) * t142;
     const ariane6_real_t t144 = ARIANE6_C(0.17) * t142 - t20;
     const ariane6_real_t t145 = t53 * t144 - t54 * t143;
     const ariane6_real_t t146 = t53 * t143 + t54 * t144 + ARIANE6_C(-0.685) * t142;
     const ariane6_real_t t147 = t87 * t146 - t86 * t145 + ARIANE6_C(-0.18) * t142 + t140 * t15;
     const ariane6_real_t t148 = t147 * t24;
-    const ariane6_real_t t149 = t115 + t116;
+    const ariane6_real_t t149 = t115 + t116; /* link j4: column of the mass matrix */
     const ariane6_real_t t150 = t30 + ARIANE6_C(0.17) * t48;
     const ariane6_real_t t151 = t54 * t149 + t53 * t150;
     const ariane6_real_t t152 = t53 * t149 - t54 * t150 + ARIANE6_C(0.685) * t48;
@@ -346,13 +362,15 @@ int ariane6_forward_dynamics_derivatives(
     const ariane6_real_t t154 = t153 - t147 * t25;
     const ariane6_real_t t155 = t154 * t77;
     const ariane6_real_t t156 = t134 - t140 * t141 - t147 * t148 - t154 * t155;
+    /* link j4: inertia of it and all beyond */
     const ariane6_real_t t157 = parameters[XZ3] + (t39 * t40 - t38 + ARIANE6_C(-0.17) * t74);
     const ariane6_real_t t158 = parameters[YZ3] - t75;
-    const ariane6_real_t t159 = t53 * t158 - t54 * t157;
+    const ariane6_real_t t159 = t53 * t158 - t54 * t157; /* link j3: column of the mass matrix */
     const ariane6_real_t t160 = t53 * t157 + t54 * t158;
     const ariane6_real_t t161 = t87 * t160 - t86 * t159 - t140 * t67 - t147 * t71;
     const ariane6_real_t t162 = t161 - t154 * t78;
     const ariane6_real_t t163 = t162 * t107;
+    /* link j3: inertia of it and all beyond */
     const ariane6_real_t t164 = t159 + ARIANE6_C(-0.685) * t74 - parameters[XZ2R];
     const ariane6_real_t t165 = parameters[YZ2] + t160;
     const ariane6_real_t t166 = t87 * t165 - t86 * t164 - t140 * t97 - t147 * t101;
@@ -375,38 +393,38 @@ int ariane6_forward_dynamics_derivatives(
         ariane6_zero(ddq_by_input, 36);
         return ARIANE6_STATUS_PIVOT;
     }
-    const ariane6_real_t t172 = t86 * dq[0];
+    const ariane6_real_t t172 = t86 * dq[0]; /* link j2: motion */
     const ariane6_real_t t173 = t87 * dq[0];
-    const ariane6_real_t t174 = t54 * t172 + t53 * t173;
+    const ariane6_real_t t174 = t54 * t172 + t53 * t173; /* link j3: motion */
     const ariane6_real_t t175 = t54 * t173 - t53 * t172;
     const ariane6_real_t t176 = t174 * t175;
     const ariane6_real_t t177 = dq[1] + dq[2];
     const ariane6_real_t t178 = t175 * t177;
-    const ariane6_real_t t179 = ARIANE6_C(2.0) * t178;
+    const ariane6_real_t t179 = ARIANE6_C(2.0) * t178; /* link j4: motion */
     const ariane6_real_t t180 = t39 * t179 - t36 * t176;
     const ariane6_real_t t181 = t39 * t177;
     const ariane6_real_t t182 = t36 * t174 - t181;
     const ariane6_real_t t183 = dq[3] + t175;
     const ariane6_real_t t184 = t182 * t183;
     const ariane6_real_t t185 = t180 + t184;
-    const ariane6_real_t t186 = t10 * t182 + t6 * t183;
+    const ariane6_real_t t186 = t10 * t182 + t6 * t183; /* link j5: motion */
     const ariane6_real_t t187 = t6 * t182 - t10 * t183;
     const ariane6_real_t t188 = t186 * t187;
-    const ariane6_real_t t189 = t185 + t188;
-    const ariane6_real_t t190 = t39 * t176 + t36 * t179;
+    const ariane6_real_t t189 = t185 + t188; /* link j6: motion */
+    const ariane6_real_t t190 = t39 * t176 + t36 * t179; /* link j4: motion */
     const ariane6_real_t t191 = t36 * t177;
     const ariane6_real_t t192 = t39 * t174 + t191;
     const ariane6_real_t t193 = t192 * t183;
     const ariane6_real_t t194 = t190 - t193;
-    const ariane6_real_t t195 = t194 - t193;
-    const ariane6_real_t t196 = t182 * t192;
-    const ariane6_real_t t197 = t174 * t177;
-    const ariane6_real_t t198 = t196 - t197;
+    const ariane6_real_t t195 = t194 - t193; /* link j5: motion */
+    const ariane6_real_t t196 = t182 * t192; /* link j4: motion */
+    const ariane6_real_t t197 = t174 * t177; /* link j3: motion */
+    const ariane6_real_t t198 = t196 - t197; /* link j5: motion */
     const ariane6_real_t t199 = t6 * t198 + t10 * t195;
     const ariane6_real_t t200 = dq[4] + t192;
     const ariane6_real_t t201 = t187 * t200;
     const ariane6_real_t t202 = t199 - t201;
-    const ariane6_real_t t203 = t202 - t201;
+    const ariane6_real_t t203 = t202 - t201; /* link j6: motion */
     const ariane6_real_t t204 = t1 * t203 - t2 * t189;
     const ariane6_real_t t205 = t2 * t186 + t1 * t200;
     const ariane6_real_t t206 = dq[5] - t187;
@@ -415,145 +433,170 @@ int ariane6_forward_dynamics_derivatives(
     const ariane6_real_t t209 = t1 * t189 + t2 * t203;
     const ariane6_real_t t210 = t1 * t186 - t2 * t200;
     const ariane6_real_t t211 = t210 * t206;
-    const ariane6_real_t t212 = t211 + (t209 + t211);
-    const ariane6_real_t t213 = t10 * t198 - t6 * t195;
+    const ariane6_real_t t212 = t211 + (t209 + t211); /* link j6: force and moment */
+    const ariane6_real_t t213 = t10 * t198 - t6 * t195; /* link j5: motion */
     const ariane6_real_t t214 = t186 * t200;
     const ariane6_real_t t215 = t213 - t214;
-    const ariane6_real_t t216 = t210 * t205;
-    const ariane6_real_t t217 = t216 - t215;
+    const ariane6_real_t t216 = t210 * t205; /* link j6: motion */
+    const ariane6_real_t t217 = t216 - t215; /* link j6: force and moment */
     const ariane6_real_t t218 = parameters[ZZ6] * t207 - parameters[XX6R] * t208 + parameters[XY6] * t212
         + parameters[XZ6R] * t217;
-    const ariane6_real_t t219 = t205 * t205;
+    const ariane6_real_t t219 = t205 * t205; /* link j6: motion */
     const ariane6_real_t t220 = t206 * t206;
     const ariane6_real_t t221 = dq[0] * dq[0];
-    const ariane6_real_t t222 = ARIANE6_C(0.18) * t221;
+    const ariane6_real_t t222 = ARIANE6_C(0.18) * t221; /* link j2: motion */
     const ariane6_real_t t223 = t87 * t222 + ARIANE6_C(-9.81) * t86;
     const ariane6_real_t t224 = t173 * t173;
     const ariane6_real_t t225 = dq[1] * dq[1];
-    const ariane6_real_t t226 = t223 + ARIANE6_C(0.685) * (t225 + t224);
+    const ariane6_real_t t226 = t223 + ARIANE6_C(0.685) * (t225 + t224); /* link j3: motion */
     const ariane6_real_t t227 = t54 * t226;
-    const ariane6_real_t t228 = t86 * t222 + ARIANE6_C(9.81) * t87;
+    const ariane6_real_t t228 = t86 * t222 + ARIANE6_C(9.81) * t87; /* link j2: motion */
     const ariane6_real_t t229 = t172 * t173;
-    const ariane6_real_t t230 = ARIANE6_C(-0.685) * t229 - t228;
+    const ariane6_real_t t230 = ARIANE6_C(-0.685) * t229 - t228; /* link j3: motion */
     const ariane6_real_t t231 = t227 + t53 * t230;
     const ariane6_real_t t232 = t175 * t175;
     const ariane6_real_t t233 = t177 * t177;
-    const ariane6_real_t t234 = t232 + t233;
+    const ariane6_real_t t234 = t232 + t233; /* link j4: motion */
     const ariane6_real_t t235 = t231 + (ARIANE6_C(-0.17) * t234 + ARIANE6_C(-0.488) * t176);
-    const ariane6_real_t t236 = dq[1] * t172;
-    const ariane6_real_t t237 = ARIANE6_C(-1.37) * t236;
+    const ariane6_real_t t236 = dq[1] * t172; /* link j2: motion */
+    const ariane6_real_t t237 = ARIANE6_C(-1.37) * t236; /* link j3: motion */
+    /* link j4: motion */
     const ariane6_real_t t238 = t237 + (ARIANE6_C(0.34) * t197 + ARIANE6_C(-0.976) * t178);
     const ariane6_real_t t239 = t36 * t235 - t39 * t238;
-    const ariane6_real_t t240 = t53 * t226;
+    const ariane6_real_t t240 = t53 * t226; /* link j3: motion */
     const ariane6_real_t t241 = t54 * t230 - t240;
     const ariane6_real_t t242 = t174 * t174;
-    const ariane6_real_t t243 = t242 + t233;
+    const ariane6_real_t t243 = t242 + t233; /* link j4: motion */
     const ariane6_real_t t244 = t241 + (ARIANE6_C(0.17) * t176 + ARIANE6_C(0.488) * t243);
-    const ariane6_real_t t245 = t10 * t244 - t6 * t239;
+    const ariane6_real_t t245 = t10 * t244 - t6 * t239; /* link j5: motion */
+    /* link j6: force and moment */
     const ariane6_real_t t246 = t218 - parameters[YZ6R] * (t219 - t220) + parameters[MY6] * t245;
     const ariane6_real_t t247 = t208 - t207;
     const ariane6_real_t t248 = parameters[XX6R] - parameters[ZZ6];
     const ariane6_real_t t249 = t215 + t216;
-    const ariane6_real_t t250 = t210 * t210;
+    const ariane6_real_t t250 = t210 * t210; /* link j6: motion */
+    /* link j6: force and moment */
     const ariane6_real_t t251 = t211 * t248 + parameters[XY6] * t247 + parameters[YZ6R] * t249
         + parameters[XZ6R] * (t220 - t250);
     const ariane6_real_t t252 = t251 + parameters[MX6] * t245;
-    const ariane6_real_t t253 = t214 - t215;
+    const ariane6_real_t t253 = t214 - t215; /* link j6: motion */
     const ariane6_real_t t254 = t185 - t188;
+    /* link j5: force and moment */
     const ariane6_real_t t255 = parameters[ZZ5R] * t201 - parameters[XX5R] * t202 + parameters[XY5] * t253
         - parameters[XZ5] * t254;
-    const ariane6_real_t t256 = t187 * t187;
+    const ariane6_real_t t256 = t187 * t187; /* link j5: motion */
     const ariane6_real_t t257 = t200 * t200;
-    const ariane6_real_t t258 = t39 * t235 + t36 * t238;
+    const ariane6_real_t t258 = t39 * t235 + t36 * t238; /* link j4: motion */
+    /* link j6: what it passes on */
     const ariane6_real_t t259 = t255 + parameters[YZ5] * (t257 - t256) + parameters[MY5R] * t258 + (t1 * t246
         + t2 * t252);
-    const ariane6_real_t t260 = t10 * t239 + t6 * t244;
+    const ariane6_real_t t260 = t10 * t239 + t6 * t244; /* link j5: motion */
+    /* link j6: force and moment */
     const ariane6_real_t t261 = parameters[MX6] * (t2 * t260 + t1 * t258) + parameters[MY6] * (t1 * t260
         - t2 * t258);
     const ariane6_real_t t262 = parameters[ZZ6] * t215 + parameters[XX6R] * t216 - parameters[YZ6R] * t209
         + parameters[XZ6R] * t204;
     const ariane6_real_t t263 = t262 + parameters[XY6] * (t250 - t219) + t261;
-    const ariane6_real_t t264 = parameters[XX5R] - parameters[ZZ5R];
-    const ariane6_real_t t265 = t186 * t186;
+    const ariane6_real_t t264 = parameters[XX5R] - parameters[ZZ5R]; /* link j5: force and moment */
+    const ariane6_real_t t265 = t186 * t186; /* link j5: motion */
+    /* link j5: force and moment */
     const ariane6_real_t t266 = t214 * t264 + parameters[XY5] * t203 + parameters[YZ5] * t189
         + parameters[XZ5] * (t257 - t265);
-    const ariane6_real_t t267 = t266 + parameters[MX5] * t258 + t263;
-    const ariane6_real_t t268 = t184 + t185;
+    const ariane6_real_t t267 = t266 + parameters[MX5] * t258 + t263; /* link j6: what it passes on */
+    const ariane6_real_t t268 = t184 + t185; /* link j5: motion */
     const ariane6_real_t t269 = t197 + t196;
+    /* link j4: force and moment */
     const ariane6_real_t t270 = parameters[ZZ4R] * t193 - parameters[XX4R] * t194 + parameters[XY4] * t268
         + parameters[XZ4] * t269;
-    const ariane6_real_t t271 = t192 * t192;
+    const ariane6_real_t t271 = t192 * t192; /* link j4: motion */
     const ariane6_real_t t272 = t183 * t183;
+    /* link j5: what it passes on */
     const ariane6_real_t t273 = t270 + parameters[YZ4] * (t272 - t271) + parameters[MY4R] * t244 + (t10 * t259
         + t6 * t267);
+    /* link j5: force and moment */
     const ariane6_real_t t274 = parameters[ZZ5R] * t185 + parameters[XX5R] * t188 + parameters[YZ5] * t213
         + parameters[XZ5] * t199;
     const ariane6_real_t t275 = parameters[XY5] * (t256 - t265) - t274 + (parameters[MX5] * t245
         - parameters[MY5R] * t260);
-    const ariane6_real_t t276 = t275 + (t1 * t252 - t2 * t246);
-    const ariane6_real_t t277 = parameters[XX4R] - parameters[ZZ4R];
-    const ariane6_real_t t278 = t182 * t182;
+    const ariane6_real_t t276 = t275 + (t1 * t252 - t2 * t246); /* link j6: what it passes on */
+    const ariane6_real_t t277 = parameters[XX4R] - parameters[ZZ4R]; /* link j4: force and moment */
+    const ariane6_real_t t278 = t182 * t182; /* link j4: motion */
+    /* link j4: force and moment */
     const ariane6_real_t t279 = t184 * t277 + parameters[XY4] * t195 + parameters[YZ4] * t198
         + parameters[XZ4] * (t272 - t278);
-    const ariane6_real_t t280 = t279 + parameters[MX4] * t244 + t276;
+    const ariane6_real_t t280 = t279 + parameters[MX4] * t244 + t276; /* link j5: what it passes on */
+    /* link j6: force and moment */
     const ariane6_real_t t281 = parameters[MX6] * (t219 + t220) + parameters[MY6] * t249;
     const ariane6_real_t t282 = parameters[MX6] * t217 + parameters[MY6] * (t250 + t220);
+    /* link j6: what it passes on */
     const ariane6_real_t t283 = parameters[MX5] * (t256 + t257) + parameters[MY5R] * t189 + (t1 * t281
         - t2 * t282);
     const ariane6_real_t t284 = parameters[MX5] * t254 - parameters[MY5R] * (t265 + t257)
         + (parameters[MX6] * t212 + parameters[MY6] * t247);
+    /* link j5: what it passes on */
     const ariane6_real_t t285 = parameters[MX4] * (t271 + t272) + parameters[MY4R] * t198 + (t10 * t283
         + t6 * t284);
+    /* link j6: what it passes on */
     const ariane6_real_t t286 = parameters[MX5] * t253 + parameters[MY5R] * t203 + (t2 * t281 + t1 * t282);
+    /* link j5: what it passes on */
     const ariane6_real_t t287 = parameters[MX4] * t269 + parameters[MY4R] * (t278 + t272) + t286;
-    const ariane6_real_t t288 = t39 * t285 + t36 * t287;
-    const ariane6_real_t t289 = ARIANE6_C(2.0) * t197;
+    const ariane6_real_t t288 = t39 * t285 + t36 * t287; /* link j4: what it passes on */
+    const ariane6_real_t t289 = ARIANE6_C(2.0) * t197; /* link j4: motion */
+    /* link j3: force and moment */
     const ariane6_real_t t290 = parameters[XY3R] * t289 - (parameters[XX3R] * t178 + parameters[ZZ3R] * t178)
         - parameters[XZ3] * t176;
+    /* link j4: what it passes on */
     const ariane6_real_t t291 = t290 + parameters[YZ3] * (t233 - t232) + parameters[MY3R] * t237 + (t36 * t273
         + t39 * t280 + ARIANE6_C(-0.488) * t288);
+    /* link j4: force and moment */
     const ariane6_real_t t292 = parameters[ZZ4R] * t197 - parameters[XX4R] * t196 + parameters[YZ4] * t180
         - parameters[XZ4] * t190;
     const ariane6_real_t t293 = t292 - parameters[XY4] * (t278 - t271) - (parameters[MX4] * t258
         + parameters[MY4R] * t239);
-    const ariane6_real_t t294 = t293 + (t6 * t259 - t10 * t267);
-    const ariane6_real_t t295 = parameters[ZZ3R] - parameters[XX3R];
+    const ariane6_real_t t294 = t293 + (t6 * t259 - t10 * t267); /* link j5: what it passes on */
+    const ariane6_real_t t295 = parameters[ZZ3R] - parameters[XX3R]; /* link j3: force and moment */
     const ariane6_real_t t296 = parameters[XY3R] * t179 - t197 * t295 - parameters[YZ3] * t176
         - parameters[XZ3] * (t242 - t233);
+    /* link j4: what it passes on */
     const ariane6_real_t t297 = t296 + parameters[MX3R] * t237 - (t294 - ARIANE6_C(0.17) * t288);
-    const ariane6_real_t t298 = dq[1] * t173;
-    const ariane6_real_t t299 = parameters[ZZ2R] * t298;
-    const ariane6_real_t t300 = ARIANE6_C(2.0) * t236;
+    const ariane6_real_t t298 = dq[1] * t173; /* link j2: motion */
+    const ariane6_real_t t299 = parameters[ZZ2R] * t298; /* link j2: force and moment */
+    const ariane6_real_t t300 = ARIANE6_C(2.0) * t236; /* link j2: motion */
+    /* link j2: force and moment */
     const ariane6_real_t t301 = parameters[XY2] * t300 - (parameters[XX2R] * t298 + t299)
         - parameters[XZ2R] * t229;
     const ariane6_real_t t302 = parameters[YZ2] * (t225 - t224);
+    /* link j2: what it passes on */
     const ariane6_real_t t303 = t86 * (t301 + t302 + (t54 * t291 + t53 * t297));
+    /* link j4: what it passes on */
     const ariane6_real_t t304 = parameters[MX3R] * t289 + parameters[MY3R] * t179 + t288;
-    const ariane6_real_t t305 = t236 * (parameters[ZZ2R] - parameters[XX2R]);
-    const ariane6_real_t t306 = ARIANE6_C(2.0) * t298;
+    const ariane6_real_t t305 = t236 * (parameters[ZZ2R] - parameters[XX2R]); /* link j2: force and moment */
+    const ariane6_real_t t306 = ARIANE6_C(2.0) * t298; /* link j2: motion */
     const ariane6_real_t t307 = t172 * t172;
-    const ariane6_real_t t308 = parameters[XZ2R] * (t307 - t225);
+    const ariane6_real_t t308 = parameters[XZ2R] * (t307 - t225); /* link j2: force and moment */
+    /* link j3: what it passes on */
     const ariane6_real_t t309 = t305 - parameters[XY2] * t306 + parameters[YZ2] * t229 + t308 + (t53 * t291
         - t54 * t297 + ARIANE6_C(0.685) * t304);
+    /* link j2: what it passes on */
     const ariane6_real_t t310 = t303 + t87 * t309 + ARIANE6_C(0.18) * (parameters[MX2R] * t300
         + parameters[MY2] * t306 + t304);
     const ariane6_real_t t311 = t133 * dq[0];
-    const ariane6_real_t t312 = ariane6_sign(t311);
-    const ariane6_real_t t313 = ARIANE6_C(82.55365977800001) * (t130 * t130);
+    const ariane6_real_t t312 = ariane6_sign(t311); /* joint j1: coulomb_friction */
+    const ariane6_real_t t313 = ARIANE6_C(82.55365977800001) * (t130 * t130); /* joint j1: drive */
     const ariane6_real_t t314 = t132 * t132;
     const ariane6_real_t t315 = ARIANE6_C(4063.3400000000006) * t128 + t313 * t314;
     const ariane6_real_t t316 = t130 * t315;
     const ariane6_real_t t317 = parameters[FV1] * t311 + parameters[FC1] * t312
         + parameters[IA1] * (t316 * t221);
     const ariane6_real_t t318 = ARIANE6_C(0.004) * t133;
-    const ariane6_real_t t319 = ariane6_sign(dq[5]);
+    const ariane6_real_t t319 = ariane6_sign(dq[5]); /* joint j6: coulomb_friction */
     const ariane6_real_t t320 = ARIANE6_C(1.0e2) * (parameters[FV6] * (ARIANE6_C(1.0e2) * dq[5])
         + parameters[FC6] * t319) + t263;
     const ariane6_real_t t321 = ARIANE6_C(5.0) * input[5] - t320;
     const ariane6_real_t t322 = t310 - t133 * t317 - input[0] * t318 - t321 * t141;
     const ariane6_real_t t323 = t11 * dq[4];
-    const ariane6_real_t t324 = ariane6_sign(t323);
-    const ariane6_real_t t325 = ARIANE6_C(-62.9983008) * (t8 * t8);
+    const ariane6_real_t t324 = ariane6_sign(t323); /* joint j5: coulomb_friction */
+    const ariane6_real_t t325 = ARIANE6_C(-62.9983008) * (t8 * t8); /* joint j5: drive */
     const ariane6_real_t t326 = t10 * t10;
     const ariane6_real_t t327 = ARIANE6_C(3549.6000000000004) * t6 - t325 * t326;
     const ariane6_real_t t328 = t8 * t327;
@@ -562,19 +605,22 @@ int ariane6_forward_dynamics_derivatives(
         + parameters[IA5] * (t328 * t329);
     const ariane6_real_t t331 = ARIANE6_C(0.004) * t11;
     const ariane6_real_t t332 = input[4] * t331 - (t11 * t330 - t276) + t321 * t15;
-    const ariane6_real_t t333 = ariane6_sign(dq[3]);
+    const ariane6_real_t t333 = ariane6_sign(dq[3]); /* joint j4: coulomb_friction */
     const ariane6_real_t t334 = ARIANE6_C(1.0e2) * (parameters[FV4] * (ARIANE6_C(1.0e2) * dq[3])
         + parameters[FC4] * t333) - t294;
     const ariane6_real_t t335 = ARIANE6_C(5.0) * input[3] - t334 - t321 * t32 + t332 * t25;
-    const ariane6_real_t t336 = t36 * t285 - t39 * t287;
+    const ariane6_real_t t336 = t36 * t285 - t39 * t287; /* link j4: what it passes on */
+    /* link j5: what it passes on */
     const ariane6_real_t t337 = parameters[MX4] * t268 + parameters[MY4R] * t195 - (t6 * t283 - t10 * t284);
+    /* link j4: what it passes on */
     const ariane6_real_t t338 = t39 * t273 - t36 * t280 - (ARIANE6_C(0.17) * t337 - ARIANE6_C(0.488) * t336);
+    /* link j3: force and moment */
     const ariane6_real_t t339 = parameters[XY3R] * (t242 - t232) - parameters[XX3R] * t176
         + (parameters[MY3R] * t231 - parameters[MX3R] * t241);
-    const ariane6_real_t t340 = t339 + t338;
+    const ariane6_real_t t340 = t339 + t338; /* link j4: what it passes on */
     const ariane6_real_t t341 = t60 * dq[2];
-    const ariane6_real_t t342 = ariane6_sign(t341);
-    const ariane6_real_t t343 = ARIANE6_C(350.9209088000001) * (t58 * t58);
+    const ariane6_real_t t342 = ariane6_sign(t341); /* joint j3: coulomb_friction */
+    const ariane6_real_t t343 = ARIANE6_C(350.9209088000001) * (t58 * t58); /* joint j3: drive */
     const ariane6_real_t t344 = t55 * t55;
     const ariane6_real_t t345 = ARIANE6_C(8377.600000000002) * t56 - t343 * t344;
     const ariane6_real_t t346 = t58 * t345;
@@ -585,14 +631,15 @@ int ariane6_forward_dynamics_derivatives(
     const ariane6_real_t t350 = input[2] * t349 - (t60 * t348 + t340) - t321 * t67;
     const ariane6_real_t t351 = t350 - t332 * t71 + t335 * t78;
     const ariane6_real_t t352 = t322 - t332 * t148 + t335 * t155 - t351 * t163;
+    /* link j3: what it passes on */
     const ariane6_real_t t353 = t53 * (parameters[MX3R] * t234 - parameters[MY3R] * t176 + t336)
         + t54 * (parameters[MY3R] * t243 - parameters[MX3R] * t176 - t337);
-    const ariane6_real_t t354 = parameters[XY2] * (t224 - t307);
+    const ariane6_real_t t354 = parameters[XY2] * (t224 - t307); /* link j2: force and moment */
     const ariane6_real_t t355 = parameters[XX2R] * t229;
     const ariane6_real_t t356 = parameters[MX2R] * t228 + parameters[MY2] * t223;
     const ariane6_real_t t357 = t93 * dq[1];
-    const ariane6_real_t t358 = ariane6_sign(t357);
-    const ariane6_real_t t359 = ARIANE6_C(805.4089362000002) * (t91 * t91);
+    const ariane6_real_t t358 = ariane6_sign(t357); /* joint j2: coulomb_friction */
+    const ariane6_real_t t359 = ARIANE6_C(805.4089362000002) * (t91 * t91); /* joint j2: drive */
     const ariane6_real_t t360 = t88 * t88;
     const ariane6_real_t t361 = ARIANE6_C(12691.800000000003) * t89 - t359 * t360;
     const ariane6_real_t t362 = t91 * t361;
@@ -618,7 +665,7 @@ int ariane6_forward_dynamics_derivatives(
     const ariane6_real_t t376 = ariane6_bounded(t375 - t32 * t372 + t15 * t374);
     ddq[5] = t376;
     const ariane6_real_t t377 = t370 + t371;
-    const ariane6_real_t t378 = t86 * t54 + t87 * t53;
+    const ariane6_real_t t378 = t86 * t54 + t87 * t53; /* link j3: motion */
     const ariane6_real_t t379 = dq[0] * t378;
     const ariane6_real_t t380 = t86 * t53 - t87 * t54;
     const ariane6_real_t t381 = dq[0] * t380;
@@ -629,20 +676,20 @@ int ariane6_forward_dynamics_derivatives(
     const ariane6_real_t t386 = t385 - t384;
     const ariane6_real_t t387 = t385 + t386;
     const ariane6_real_t t388 = t36 * t383 - t39 * t387;
-    const ariane6_real_t t389 = t181 - t36 * t379;
+    const ariane6_real_t t389 = t181 - t36 * t379; /* link j4: motion */
     const ariane6_real_t t390 = t381 - dq[3];
     const ariane6_real_t t391 = t389 * t390;
     const ariane6_real_t t392 = t391 + t388;
     const ariane6_real_t t393 = t374 + t392;
-    const ariane6_real_t t394 = t10 * t389 + t6 * t390;
+    const ariane6_real_t t394 = t10 * t389 + t6 * t390; /* link j5: motion */
     const ariane6_real_t t395 = t10 * t390 - t6 * t389;
     const ariane6_real_t t396 = t394 * t395;
     const ariane6_real_t t397 = t393 - t396;
     const ariane6_real_t t398 = t369 * t380;
-    const ariane6_real_t t399 = t177 * t379;
+    const ariane6_real_t t399 = t177 * t379; /* link j3: motion */
     const ariane6_real_t t400 = t399 + t398;
     const ariane6_real_t t401 = t400 - t372;
-    const ariane6_real_t t402 = t191 + t39 * t379;
+    const ariane6_real_t t402 = t191 + t39 * t379; /* link j4: motion */
     const ariane6_real_t t403 = t389 * t402;
     const ariane6_real_t t404 = t403 + t401;
     const ariane6_real_t t405 = t39 * t383 + t36 * t387;
@@ -650,12 +697,12 @@ int ariane6_forward_dynamics_derivatives(
     const ariane6_real_t t407 = t406 - t405;
     const ariane6_real_t t408 = t406 + t407;
     const ariane6_real_t t409 = t6 * t404 - t10 * t408;
-    const ariane6_real_t t410 = dq[4] + t402;
+    const ariane6_real_t t410 = dq[4] + t402; /* link j5: motion */
     const ariane6_real_t t411 = t395 * t410;
     const ariane6_real_t t412 = t411 + t409;
     const ariane6_real_t t413 = t411 + t412;
     const ariane6_real_t t414 = t2 * t397 + t1 * t413;
-    const ariane6_real_t t415 = t2 * t394 - t1 * t410;
+    const ariane6_real_t t415 = t2 * t394 - t1 * t410; /* link j6: motion */
     const ariane6_real_t t416 = dq[5] - t395;
     const ariane6_real_t t417 = t415 * t416;
     const ariane6_real_t t418 = t414 - t417;
@@ -664,10 +711,10 @@ int ariane6_forward_dynamics_derivatives(
     const ariane6_real_t t421 = t420 * t416;
     const ariane6_real_t t422 = t421 + (t421 - t419);
     const ariane6_real_t t423 = t10 * t404 + t6 * t408;
-    const ariane6_real_t t424 = t394 * t410;
+    const ariane6_real_t t424 = t394 * t410; /* link j5: motion */
     const ariane6_real_t t425 = t423 - t424;
     const ariane6_real_t t426 = t425 - t376;
-    const ariane6_real_t t427 = t420 * t415;
+    const ariane6_real_t t427 = t420 * t415; /* link j6: motion */
     const ariane6_real_t t428 = t427 + t426;
     const ariane6_real_t t429 = parameters[XX6R] * t418 - parameters[ZZ6] * t417 - parameters[XY6] * t422
         + parameters[XZ6R] * t428;
@@ -679,23 +726,23 @@ int ariane6_forward_dynamics_derivatives(
     const ariane6_real_t t435 = t432 + ARIANE6_C(-0.685) * t434;
     const ariane6_real_t t436 = t399 + t400;
     const ariane6_real_t t437 = t435 + (ARIANE6_C(0.17) * t436 + ARIANE6_C(0.488) * t387);
-    const ariane6_real_t t438 = t381 * t381;
-    const ariane6_real_t t439 = t233 + t438;
+    const ariane6_real_t t438 = t381 * t381; /* link j3: motion */
+    const ariane6_real_t t439 = t233 + t438; /* link j4: motion */
     const ariane6_real_t t440 = t229 + t370;
     const ariane6_real_t t441 = t228 + ARIANE6_C(0.685) * t440;
     const ariane6_real_t t442 = t227 - t53 * t441;
     const ariane6_real_t t443 = t442 + (ARIANE6_C(-0.17) * t439 + ARIANE6_C(0.488) * t383);
     const ariane6_real_t t444 = t36 * t443 - t39 * t437;
     const ariane6_real_t t445 = t382 - t377;
-    const ariane6_real_t t446 = t379 * t379;
-    const ariane6_real_t t447 = t233 + t446;
+    const ariane6_real_t t446 = t379 * t379; /* link j3: motion */
+    const ariane6_real_t t447 = t233 + t446; /* link j4: motion */
     const ariane6_real_t t448 = t240 + t54 * t441;
     const ariane6_real_t t449 = t448 + (ARIANE6_C(-0.488) * t447 + ARIANE6_C(0.17) * t445);
     const ariane6_real_t t450 = t6 * t444 + t10 * t449;
     const ariane6_real_t t451 = parameters[YZ6R] * (t431 - t430) + t429 - parameters[MY6] * t450;
     const ariane6_real_t t452 = t426 - t427;
     const ariane6_real_t t453 = t418 - t417;
-    const ariane6_real_t t454 = t420 * t420;
+    const ariane6_real_t t454 = t420 * t420; /* link j6: motion */
     const ariane6_real_t t455 = parameters[XZ6R] * (t454 - t431) + (t248 * t421 + parameters[XY6] * t453
         + parameters[YZ6R] * t452);
     const ariane6_real_t t456 = t455 + parameters[MX6] * t450;
@@ -703,7 +750,7 @@ int ariane6_forward_dynamics_derivatives(
     const ariane6_real_t t458 = t396 + t393;
     const ariane6_real_t t459 = parameters[ZZ5R] * t411 + parameters[XX5R] * t412 + parameters[XY5] * t457
         - parameters[XZ5] * t458;
-    const ariane6_real_t t460 = t395 * t395;
+    const ariane6_real_t t460 = t395 * t395; /* link j5: motion */
     const ariane6_real_t t461 = t410 * t410;
     const ariane6_real_t t462 = t39 * t443 + t36 * t437;
     const ariane6_real_t t463 = parameters[YZ5] * (t461 - t460) + t459 + parameters[MY5R] * t462 + (t1 * t451
@@ -723,7 +770,7 @@ int ariane6_forward_dynamics_derivatives(
     const ariane6_real_t t473 = t403 - t401;
     const ariane6_real_t t474 = parameters[ZZ4R] * t406 + parameters[XX4R] * t407 - parameters[XY4] * t472
         + parameters[XZ4] * t473;
-    const ariane6_real_t t475 = t402 * t402;
+    const ariane6_real_t t475 = t402 * t402; /* link j4: motion */
     const ariane6_real_t t476 = t390 * t390;
     const ariane6_real_t t477 = parameters[YZ4] * (t475 - t476) + t474 + parameters[MY4R] * t449 + (t6 * t471
         - t10 * t463);
@@ -774,7 +821,7 @@ int ariane6_forward_dynamics_derivatives(
     const ariane6_real_t t508 = ariane6_select(t129, t129, ARIANE6_C(1.0));
     const ariane6_real_t t509 = ARIANE6_C(1.0) / t508;
     const ariane6_real_t t510 = ARIANE6_C(0.0406334) * t132;
-    const ariane6_real_t t511 = ARIANE6_C(0.061525739908548135) * t129 / t132;
+    const ariane6_real_t t511 = ARIANE6_C(0.061525739908548135) * t129 / t132; /* joint j1: drive */
     const ariane6_real_t t512 = ARIANE6_C(1.0) / t132;
     const ariane6_real_t t513 = t512 * (ARIANE6_C(0.061525739908548135) * (t510 * (ARIANE6_C(0.5) * t509))
         + t128 * t511);
@@ -819,6 +866,7 @@ int ariane6_forward_dynamics_derivatives(
     const ariane6_real_t t545 = parameters[XX6R] + t544;
     const ariane6_real_t t546 = t416 * t545 + parameters[XZ6R] * t420;
     const ariane6_real_t t547 = parameters[YZ6R] * t415 - t416 * t544;
+    /* link j6: inertia, momentum beyond */
     const ariane6_real_t t548 = t1 * (t543 - t541) + t2 * (t546 + t547);
     const ariane6_real_t t549 = t1 * t548;
     const ariane6_real_t t550 = parameters[XZ5] * t395;
@@ -836,73 +884,87 @@ int ariane6_forward_dynamics_derivatives(
     const ariane6_real_t t562 = t420 * t544 + parameters[XY6] * t415;
     const ariane6_real_t t563 = parameters[XX5R] + t559;
     const ariane6_real_t t564 = t410 * t563 + parameters[XZ5] * t394 + (t2 * t562 - t1 * t561);
+    /* link j5: inertia, momentum beyond */
     const ariane6_real_t t565 = t10 * (t552 - t555) + t6 * (t560 + t564);
     const ariane6_real_t t566 = t10 * t565;
     const ariane6_real_t t567 = parameters[XZ4] * t402;
     const ariane6_real_t t568 = parameters[XY4] * t390;
     const ariane6_real_t t569 = t567 - t568 + (t555 + t566);
-    const ariane6_real_t t570 = t550 - t554 + (t541 + t549);
+    const ariane6_real_t t570 = t550 - t554 + (t541 + t549); /* link j6: inertia, momentum beyond */
     const ariane6_real_t t571 = parameters[YZ4] * t389;
-    const ariane6_real_t t572 = t571 - t568 + t570;
-    const ariane6_real_t t573 = t2 * t548;
+    const ariane6_real_t t572 = t571 - t568 + t570; /* link j5: inertia, momentum beyond */
+    const ariane6_real_t t573 = t2 * t548; /* link j6: inertia, momentum beyond */
     const ariane6_real_t t574 = parameters[ZZ5R] + t559;
     const ariane6_real_t t575 = t573 - t547 - (t395 * t574 + parameters[YZ5] * t410);
     const ariane6_real_t t576 = parameters[XZ5] * t410 + t394 * t574 + (t2 * t561 + t1 * t562);
     const ariane6_real_t t577 = ARIANE6_C(-0.5) * (parameters[XX4R] + parameters[ZZ4R]);
+    /* link j5: inertia, momentum beyond */
     const ariane6_real_t t578 = parameters[YZ4] * t402 - t390 * t577 + (t10 * t575 - t6 * t576);
+    /* link j6: inertia, momentum beyond */
     const ariane6_real_t t579 = parameters[XY5] * t394 - t395 * t563 + (t546 - t573);
     const ariane6_real_t t580 = t394 * t559 - parameters[XY5] * t395 + (t2 * t557 + t1 * t558);
     const ariane6_real_t t581 = parameters[XX4R] + t577;
+    /* link j5: inertia, momentum beyond */
     const ariane6_real_t t582 = parameters[XZ4] * t389 - t390 * t581 + (t10 * t579 - t6 * t580);
+    /* link j4: inertia, momentum beyond */
     const ariane6_real_t t583 = t36 * (t569 + t572) - t39 * (t578 - t582);
     const ariane6_real_t t584 = t36 * t583;
     const ariane6_real_t t585 = parameters[MY6] * t416;
     const ariane6_real_t t586 = parameters[MX6] * t416;
+    /* link j6: inertia, momentum beyond */
     const ariane6_real_t t587 = parameters[MY5R] * t410 + (t1 * t585 + t2 * t586);
     const ariane6_real_t t588 = parameters[MY6] * t420 + parameters[MX6] * t415;
     const ariane6_real_t t589 = t588 - parameters[MX5] * t410;
+    /* link j5: inertia, momentum beyond */
     const ariane6_real_t t590 = t10 * t587 - t6 * t589 - parameters[MY4R] * t390;
+    /* link j6: inertia, momentum beyond */
     const ariane6_real_t t591 = parameters[MX5] * t395 - parameters[MY5R] * t394 + (t2 * t585 - t1 * t586);
-    const ariane6_real_t t592 = parameters[MX4] * t390 + t591;
-    const ariane6_real_t t593 = t36 * t590 - t39 * t592;
+    const ariane6_real_t t592 = parameters[MX4] * t390 + t591; /* link j5: inertia, momentum beyond */
+    const ariane6_real_t t593 = t36 * t590 - t39 * t592; /* link j4: inertia, momentum beyond */
     const ariane6_real_t t594 = ARIANE6_C(-0.17) * t593;
-    const ariane6_real_t t595 = ARIANE6_C(-0.488) * t177;
-    const ariane6_real_t t596 = t48 * t595;
+    const ariane6_real_t t595 = ARIANE6_C(-0.488) * t177; /* link j4: velocity of its origin */
+    const ariane6_real_t t596 = t48 * t595; /* link j4: inertia, momentum beyond */
+    /* link j5: inertia, momentum beyond */
     const ariane6_real_t t597 = parameters[MX4] * t402 - parameters[MY4R] * t389 - (t6 * t587 + t10 * t589);
-    const ariane6_real_t t598 = ARIANE6_C(-0.488) * t597;
+    const ariane6_real_t t598 = ARIANE6_C(-0.488) * t597; /* link j4: inertia, momentum beyond */
     const ariane6_real_t t599 = ARIANE6_C(-0.488) * t379 + ARIANE6_C(0.17) * t381;
     const ariane6_real_t t600 = t74 * t599;
-    const ariane6_real_t t601 = ARIANE6_C(0.17) * t177;
-    const ariane6_real_t t602 = t50 * t601;
+    const ariane6_real_t t601 = ARIANE6_C(0.17) * t177; /* link j4: velocity of its origin */
+    const ariane6_real_t t602 = t50 * t601; /* link j4: inertia, momentum beyond */
     const ariane6_real_t t603 = t600 - (t596 + t602) - (t594 + t598);
     const ariane6_real_t t604 = parameters[XZ3] * t381;
     const ariane6_real_t t605 = parameters[XY3R] * t177;
     const ariane6_real_t t606 = t603 + (t572 - t584 + (t594 + t596)) - (t604 + t605);
-    const ariane6_real_t t607 = t567 - t571 + (t566 - t552);
+    const ariane6_real_t t607 = t567 - t571 + (t566 - t552); /* link j5: inertia, momentum beyond */
     const ariane6_real_t t608 = parameters[YZ3] * t379;
+    /* link j4: inertia, momentum beyond */
     const ariane6_real_t t609 = t605 - t608 + (t603 + (t607 + (t598 + t602)));
-    const ariane6_real_t t610 = t6 * t565;
+    const ariane6_real_t t610 = t6 * t565; /* link j5: inertia, momentum beyond */
     const ariane6_real_t t611 = parameters[ZZ4R] + t577;
     const ariane6_real_t t612 = t402 * t611 - parameters[YZ4] * t390 + (t610 - t560);
     const ariane6_real_t t613 = t389 * t611 - parameters[XZ4] * t390 + (t6 * t579 + t10 * t580);
+    /* link j4: inertia, momentum beyond */
     const ariane6_real_t t614 = t36 * t612 + t39 * t613 + (ARIANE6_C(-0.488) * t593 + t50 * t595);
     const ariane6_real_t t615 = ARIANE6_C(0.5) * (parameters[XX3R] + parameters[ZZ3R]);
     const ariane6_real_t t616 = parameters[YZ3] * t381 - t177 * t615 + t614;
+    /* link j5: inertia, momentum beyond */
     const ariane6_real_t t617 = parameters[XY4] * t389 - t402 * t581 - (t564 - t610);
     const ariane6_real_t t618 = parameters[XY4] * t402 - t389 * t577 - (t6 * t575 + t10 * t576);
+    /* link j4: inertia, momentum beyond */
     const ariane6_real_t t619 = t36 * t617 + t39 * t618 + (ARIANE6_C(-0.17) * t597 + t48 * t601);
     const ariane6_real_t t620 = parameters[XX3R] - t615;
     const ariane6_real_t t621 = t177 * t620 - parameters[XZ3] * t379 - t619;
+    /* link j3: inertia, momentum beyond */
     const ariane6_real_t t622 = t54 * (t606 - t609) + t53 * (t616 - t621);
     const ariane6_real_t t623 = t54 * t622;
-    const ariane6_real_t t624 = parameters[MY3R] * t177 + t593;
+    const ariane6_real_t t624 = parameters[MY3R] * t177 + t593; /* link j4: inertia, momentum beyond */
     const ariane6_real_t t625 = parameters[MX3R] * t177 + t597;
-    const ariane6_real_t t626 = t54 * t624 + t53 * t625;
+    const ariane6_real_t t626 = t54 * t624 + t53 * t625; /* link j3: inertia, momentum beyond */
     const ariane6_real_t t627 = ARIANE6_C(0.685) * t626;
-    const ariane6_real_t t628 = ARIANE6_C(0.685) * dq[1];
-    const ariane6_real_t t629 = t122 * t628;
-    const ariane6_real_t t630 = ARIANE6_C(0.685) * t173;
-    const ariane6_real_t t631 = t74 * t630;
+    const ariane6_real_t t628 = ARIANE6_C(0.685) * dq[1]; /* link j3: velocity of its origin */
+    const ariane6_real_t t629 = t122 * t628; /* link j3: inertia, momentum beyond */
+    const ariane6_real_t t630 = ARIANE6_C(0.685) * t173; /* link j3: velocity of its origin */
+    const ariane6_real_t t631 = t74 * t630; /* link j3: inertia, momentum beyond */
     const ariane6_real_t t632 = t631 - t629 - t627;
     const ariane6_real_t t633 = parameters[XZ2R] * t173;
     const ariane6_real_t t634 = parameters[XY2] * dq[1];
@@ -916,57 +978,64 @@ int ariane6_forward_dynamics_derivatives(
     const ariane6_real_t t642 = parameters[XX2R] + t639;
     const ariane6_real_t t643 = dq[1] * t642 - parameters[XZ2R] * t172 + (t621 + t638
         + (ARIANE6_C(0.685) * t641 + t83 * t628));
+    /* link j2: inertia, momentum beyond */
     const ariane6_real_t t644 = t87 * (t87 * (t637 - t635) + t86 * (t640 + t643));
-    const ariane6_real_t t645 = parameters[MY2] * dq[1] + t626;
+    const ariane6_real_t t645 = parameters[MY2] * dq[1] + t626; /* link j3: inertia, momentum beyond */
     const ariane6_real_t t646 = t641 - parameters[MX2R] * dq[1];
+    /* link j2: inertia, momentum beyond */
     const ariane6_real_t t647 = ARIANE6_C(0.18) * (t86 * t646 - t87 * t645) + t74 * (ARIANE6_C(0.18) * dq[0]);
     const ariane6_real_t t648 = ARIANE6_C(250.0) * (parameters[IA1] * (t316 * (ARIANE6_C(-2.0) * dq[0]))
         - t133 * parameters[FV1]);
     const ariane6_real_t t649 = t648 + t511 * (ARIANE6_C(2.0) * (t635 + t644 + t647));
     const ariane6_real_t t650 = ariane6_bounded(t365 * t521);
-    const ariane6_real_t t651 = t39 * t583;
+    const ariane6_real_t t651 = t39 * t583; /* link j4: inertia, momentum beyond */
     const ariane6_real_t t652 = t39 * t590 + t36 * t592;
     const ariane6_real_t t653 = parameters[XY3R] * t379 + t381 * t620 - (t582 - t651 - (ARIANE6_C(0.17) * t652
         - t48 * t599));
     const ariane6_real_t t654 = t39 * t612 - t36 * t613 + (ARIANE6_C(-0.488) * t652 + t50 * t599);
     const ariane6_real_t t655 = parameters[XY3R] * t381 - t379 * t615 + t654;
     const ariane6_real_t t656 = parameters[MY3R] * t379 + parameters[MX3R] * t381 + t652;
+    /* link j3: inertia, momentum beyond */
     const ariane6_real_t t657 = t53 * t655 - t54 * t653 + (ARIANE6_C(0.685) * t656 + t83 * t630);
+    /* link j2: derivatives */
     const ariane6_real_t t658 = ARIANE6_C(2.0) * (t173 * t642 - parameters[XY2] * t172 + t657);
+    /* link j3: inertia, momentum beyond */
     const ariane6_real_t t659 = parameters[XY2] * t173 - t172 * t639 - (t53 * t653 + t54 * t655
         - t122 * t630);
-    const ariane6_real_t t660 = ARIANE6_C(2.0) * t659;
-    const ariane6_real_t t661 = ARIANE6_C(-0.36) * dq[0];
+    const ariane6_real_t t660 = ARIANE6_C(2.0) * t659; /* link j2: derivatives */
+    const ariane6_real_t t661 = ARIANE6_C(-0.36) * dq[0]; /* link j6: derivatives */
+    /* link j2: derivatives */
     const ariane6_real_t t662 = t86 * t658 + t87 * t660 - (t87 * t125 + t86 * t126) * t661;
-    const ariane6_real_t t663 = ARIANE6_C(0.019697757607273984) * t90 / t88;
+    const ariane6_real_t t663 = ARIANE6_C(0.019697757607273984) * t90 / t88; /* joint j2: drive */
     const ariane6_real_t t664 = t663 * t662;
     const ariane6_real_t t665 = ariane6_bounded(t349 * t523);
-    const ariane6_real_t t666 = ARIANE6_C(2.0) * t653;
+    const ariane6_real_t t666 = ARIANE6_C(2.0) * t653; /* link j3: derivatives */
     const ariane6_real_t t667 = ARIANE6_C(2.0) * t655;
-    const ariane6_real_t t668 = ARIANE6_C(1.37) * t173;
-    const ariane6_real_t t669 = t53 * t667 - t54 * t666 + t83 * t668;
+    const ariane6_real_t t668 = ARIANE6_C(1.37) * t173; /* link j6: derivatives */
+    const ariane6_real_t t669 = t53 * t667 - t54 * t666 + t83 * t668; /* link j3: derivatives */
     const ariane6_real_t t670 = t53 * t666 + t54 * t667 - t122 * t668;
     const ariane6_real_t t671 = t86 * t669 - t87 * t670 - (t87 * t122 + t86 * t83) * t661;
-    const ariane6_real_t t672 = ARIANE6_C(0.029841482047364396) * t57 / t55;
+    const ariane6_real_t t672 = ARIANE6_C(0.029841482047364396) * t57 / t55; /* joint j3: drive */
     const ariane6_real_t t673 = t672 * t671;
     const ariane6_real_t t674 = ariane6_bounded(ARIANE6_C(5.0) * t526);
-    const ariane6_real_t t675 = ARIANE6_C(2.0) * t617;
+    const ariane6_real_t t675 = ARIANE6_C(2.0) * t617; /* link j4: derivatives */
     const ariane6_real_t t676 = ARIANE6_C(2.0) * t618;
-    const ariane6_real_t t677 = ARIANE6_C(0.34) * t177;
-    const ariane6_real_t t678 = t36 * t675 + t39 * t676 + t48 * t677;
+    const ariane6_real_t t677 = ARIANE6_C(0.34) * t177; /* link j6: derivatives */
+    const ariane6_real_t t678 = t36 * t675 + t39 * t676 + t48 * t677; /* link j4: derivatives */
     const ariane6_real_t t679 = ARIANE6_C(2.0) * t607;
-    const ariane6_real_t t680 = ARIANE6_C(2.0) * t599;
+    const ariane6_real_t t680 = ARIANE6_C(2.0) * t599; /* link j6: derivatives */
     const ariane6_real_t t681 = ARIANE6_C(0.976) * t177;
-    const ariane6_real_t t682 = t679 + (t74 * t680 + t48 * t681);
-    const ariane6_real_t t683 = ARIANE6_C(-1.37) * dq[1];
+    const ariane6_real_t t682 = t679 + (t74 * t680 + t48 * t681); /* link j4: derivatives */
+    const ariane6_real_t t683 = ARIANE6_C(-1.37) * dq[1]; /* link j6: derivatives */
+    /* link j4: derivatives */
     const ariane6_real_t t684 = t54 * t678 + t53 * t682 + (t48 * t683 + t102 * t668);
-    const ariane6_real_t t685 = t54 * t74;
-    const ariane6_real_t t686 = t53 * t678 - t54 * t682 - t685 * t668;
+    const ariane6_real_t t685 = t54 * t74; /* link j4: column of the mass matrix */
+    const ariane6_real_t t686 = t53 * t678 - t54 * t682 - t685 * t668; /* link j4: derivatives */
     const ariane6_real_t t687 = t86 * t684 + t87 * t686 + (t87 * t685 - t86 * t102) * t661;
     const ariane6_real_t t688 = ARIANE6_C(0.2) * t687;
     const ariane6_real_t t689 = t688 * t674 - (t649 * t520 - t664 * t650 - t673 * t665);
     const ariane6_real_t t690 = ariane6_bounded(t331 * t531);
-    const ariane6_real_t t691 = ARIANE6_C(2.0) * t579;
+    const ariane6_real_t t691 = ARIANE6_C(2.0) * t579; /* link j5: derivatives */
     const ariane6_real_t t692 = ARIANE6_C(2.0) * t580;
     const ariane6_real_t t693 = t6 * t692 - t10 * t691;
     const ariane6_real_t t694 = ARIANE6_C(-2.0) * t570;
@@ -974,13 +1043,13 @@ int ariane6_forward_dynamics_derivatives(
     const ariane6_real_t t696 = t6 * t691 + t10 * t692;
     const ariane6_real_t t697 = t68 * t680 + t142 * t681 - t696;
     const ariane6_real_t t698 = t54 * t695 + t53 * t697 + (t142 * t683 + t98 * t668);
-    const ariane6_real_t t699 = t53 * t46 - t54 * t68;
-    const ariane6_real_t t700 = t53 * t695 - t54 * t697 + t699 * t668;
+    const ariane6_real_t t699 = t53 * t46 - t54 * t68; /* link j5: column of the mass matrix */
+    const ariane6_real_t t700 = t53 * t695 - t54 * t697 + t699 * t668; /* link j5: derivatives */
     const ariane6_real_t t701 = t86 * t698 + t87 * t700 - (t87 * t699 + t86 * t98) * t661;
-    const ariane6_real_t t702 = ARIANE6_C(0.07043047103899029) * t7 / t10;
+    const ariane6_real_t t702 = ARIANE6_C(0.07043047103899029) * t7 / t10; /* joint j5: drive */
     const ariane6_real_t t703 = t702 * t701;
     const ariane6_real_t t704 = ARIANE6_C(5.0) * t537;
-    const ariane6_real_t t705 = ARIANE6_C(2.0) * t561;
+    const ariane6_real_t t705 = ARIANE6_C(2.0) * t561; /* link j6: derivatives */
     const ariane6_real_t t706 = ARIANE6_C(-2.0) * t562;
     const ariane6_real_t t707 = t1 * t705 + t2 * t706;
     const ariane6_real_t t708 = ARIANE6_C(2.0) * t553;
@@ -990,8 +1059,8 @@ int ariane6_forward_dynamics_derivatives(
     const ariane6_real_t t712 = t6 * t707 + t10 * t708;
     const ariane6_real_t t713 = t64 * t680 + t135 * t681 - t712;
     const ariane6_real_t t714 = t54 * t711 + t53 * t713 + (t135 * t683 + t95 * t668);
-    const ariane6_real_t t715 = t53 * t65 - t54 * t64;
-    const ariane6_real_t t716 = t53 * t711 - t54 * t713 + t715 * t668;
+    const ariane6_real_t t715 = t53 * t65 - t54 * t64; /* link j6: column of the mass matrix */
+    const ariane6_real_t t716 = t53 * t711 - t54 * t713 + t715 * t668; /* link j6: derivatives */
     const ariane6_real_t t717 = t86 * t714 + t87 * t716 - (t87 * t715 + t86 * t95) * t661;
     const ariane6_real_t t718 = ARIANE6_C(0.2) * t717;
     ddq_by_dq[0] = t689 + t703 * t690 + t718 * t704;
@@ -1049,8 +1118,8 @@ int ariane6_forward_dynamics_derivatives(
     ddq_by_input[18] = -t527;
     ddq_by_input[24] = -t532;
     ddq_by_input[30] = -t538;
-    const ariane6_real_t t762 = t307 + t224;
-    const ariane6_real_t t763 = ARIANE6_C(2.0) * t173;
+    const ariane6_real_t t762 = t307 + t224; /* link j3: motion */
+    const ariane6_real_t t763 = ARIANE6_C(2.0) * t173; /* link j2: derivatives */
     const ariane6_real_t t764 = ARIANE6_C(-2.0) * t172;
     const ariane6_real_t t765 = t635 * t763 + t640 * t764 + (t164 * t762 + (t121 * t433 - t123 * t499));
     const ariane6_real_t t766 = t643 * t763 + t637 * t764 - (t165 * t762 - (t123 * t433 - t120 * t499));
@@ -1106,32 +1175,41 @@ int ariane6_forward_dynamics_derivatives(
     const ariane6_real_t t806 = t538 * t769 + t756 * t792 + t757 * t794 + t746 * t796;
     ddq_by_q[31] = t806 + t759 * t799 + t761 * t801;
     const ariane6_real_t t807 = t615 - parameters[ZZ3R];
+    /* link j4: inertia, momentum beyond */
     const ariane6_real_t t808 = t381 * t807 - parameters[YZ3] * t177 + (t578 + t651 + t74 * t595);
     const ariane6_real_t t809 = parameters[XZ3] * t177 + t379 * t807 + (t39 * t617 - t36 * t618 - t74 * t601);
     const ariane6_real_t t810 = parameters[ZZ2R] + t639;
+    /* link j3: inertia, momentum beyond */
     const ariane6_real_t t811 = t173 * t810 - parameters[YZ2] * dq[1] + (t54 * t808 - t53 * t809);
+    /* link j2: derivatives */
     const ariane6_real_t t812 = t86 * (ARIANE6_C(2.0) * t811 + (t121 * t763 + t123 * t764));
+    /* link j3: inertia, momentum beyond */
     const ariane6_real_t t813 = parameters[XZ2R] * dq[1] - t172 * t810 + (t53 * t808 + t54 * t809
         + t74 * t628);
+    /* link j2: derivatives */
     const ariane6_real_t t814 = t87 * (ARIANE6_C(2.0) * t813 + (t123 * t763 + t120 * t764));
     const ariane6_real_t t815 = t812 + t814 + ARIANE6_C(0.18) * (t125 * t763 - t126 * t764);
     const ariane6_real_t t816 = t511 * t815;
+    /* link j4: inertia, momentum beyond */
     const ariane6_real_t t817 = t569 - t584 + t600 - t603 - (t604 + t608);
+    /* link j2: derivatives */
     const ariane6_real_t t818 = ARIANE6_C(2.0) * (t633 - t636 + (t817 + t631 - t632))
         + ARIANE6_C(2.0) * (t164 * t173 + t165 * t172);
     const ariane6_real_t t819 = ARIANE6_C(250.0) * (parameters[IA2] * (t362 * (ARIANE6_C(-2.0) * dq[1]))
         - t93 * parameters[FV2]);
     const ariane6_real_t t820 = t819 + t663 * t818;
-    const ariane6_real_t t821 = ARIANE6_C(2.0) * t817;
+    const ariane6_real_t t821 = ARIANE6_C(2.0) * t817; /* link j3: derivatives */
     const ariane6_real_t t822 = t821 - t122 * t683 + ARIANE6_C(2.0) * (t159 * t173 + t160 * t172);
     const ariane6_real_t t823 = t672 * t822;
-    const ariane6_real_t t824 = t39 * t675 - t36 * t676 - t74 * t677;
+    const ariane6_real_t t824 = t39 * t675 - t36 * t676 - t74 * t677; /* link j4: derivatives */
     const ariane6_real_t t825 = t824 - t685 * t683 + ARIANE6_C(2.0) * (t152 * t172 - t151 * t173);
     const ariane6_real_t t826 = ARIANE6_C(0.2) * t825;
     const ariane6_real_t t827 = t816 * t520 - t820 * t650 - t823 * t665 + t826 * t674;
+    /* link j5: derivatives */
     const ariane6_real_t t828 = t39 * t693 + t36 * t694 + (t68 * t677 - t46 * t681);
     const ariane6_real_t t829 = t828 - t699 * t683 + ARIANE6_C(2.0) * (t145 * t173 + t146 * t172);
     const ariane6_real_t t830 = t702 * t829;
+    /* link j6: derivatives */
     const ariane6_real_t t831 = t39 * t709 + t36 * t710 + (t64 * t677 - t65 * t681);
     const ariane6_real_t t832 = t831 - t715 * t683 + ARIANE6_C(2.0) * (t138 * t173 + t139 * t172);
     const ariane6_real_t t833 = ARIANE6_C(0.2) * t832;
@@ -1152,8 +1230,8 @@ int ariane6_forward_dynamics_derivatives(
     ddq_by_input[19] = t738;
     ddq_by_input[25] = t747;
     ddq_by_input[31] = t756;
-    const ariane6_real_t t839 = t446 + t438;
-    const ariane6_real_t t840 = ARIANE6_C(2.0) * t381;
+    const ariane6_real_t t839 = t446 + t438; /* link j4: motion */
+    const ariane6_real_t t840 = ARIANE6_C(2.0) * t381; /* link j3: derivatives */
     const ariane6_real_t t841 = ARIANE6_C(2.0) * t379;
     const ariane6_real_t t842 = t616 * t841 - t606 * t840 - (t157 * t839 - (t117 * t384 - t114 * t398));
     const ariane6_real_t t843 = t498 + (t842 + t74 * t442);
@@ -1240,8 +1318,8 @@ int ariane6_forward_dynamics_derivatives(
     ddq_by_input[32] = t757;
     const ariane6_real_t t902 = t50 * t462;
     const ariane6_real_t t903 = t5 * t405;
-    const ariane6_real_t t904 = t481 + t475;
-    const ariane6_real_t t905 = ARIANE6_C(2.0) * t402;
+    const ariane6_real_t t904 = t481 + t475; /* link j5: motion */
+    const ariane6_real_t t905 = ARIANE6_C(2.0) * t402; /* link j4: derivatives */
     const ariane6_real_t t906 = ARIANE6_C(2.0) * t389;
     const ariane6_real_t t907 = t582 * t905 - t572 * t906 + (t73 * t904 - (t903 - t38 * t388));
     const ariane6_real_t t908 = t477 + (t902 - t907);
@@ -1317,8 +1395,8 @@ int ariane6_forward_dynamics_derivatives(
     ddq_by_input[21] = t741;
     ddq_by_input[27] = t749;
     ddq_by_input[33] = t746;
-    const ariane6_real_t t962 = t469 + t460;
-    const ariane6_real_t t963 = ARIANE6_C(2.0) * t395;
+    const ariane6_real_t t962 = t469 + t460; /* link j6: motion */
+    const ariane6_real_t t963 = ARIANE6_C(2.0) * t395; /* link j5: derivatives */
     const ariane6_real_t t964 = ARIANE6_C(-2.0) * t394;
     const ariane6_real_t t965 = t552 * t963 - t560 * t964 + (t18 * t962 + (t27 * t409 - t26 * t423));
     const ariane6_real_t t966 = t471 + (t965 + t42 * t465);
@@ -1421,8 +1499,8 @@ int ariane6_forward_dynamics_derivatives(
     ddq_by_input[22] = t744;
     ddq_by_input[28] = t752;
     ddq_by_input[34] = t759;
-    const ariane6_real_t t1043 = t454 + t430;
-    const ariane6_real_t t1044 = ARIANE6_C(2.0) * t415;
+    const ariane6_real_t t1043 = t454 + t430; /* link j6: force and moment */
+    const ariane6_real_t t1044 = ARIANE6_C(2.0) * t415; /* link j6: derivatives */
     const ariane6_real_t t1045 = ARIANE6_C(-2.0) * t420;
     const ariane6_real_t t1046 = t541 * t1044 - t547 * t1045 + (parameters[XY6] * t414
         - parameters[XX6R] * t419 - parameters[XZ6R] * t1043);

@@ -7,7 +7,7 @@
  * Arm ariane6, description ac2a59ce556c2f1c.
  * SPDX-License-Identifier: 0BSD
  *
- * Operations: 4468 (2509 mul, 1950 add, 9 neg), 22 div, 4 sqrt, 12 trig, 10 other.
+ * Operations: 4468 (2509 mul, 1950 add, 9 neg), 22 div, 4 sqrt, 12 trig, 10 other calls (sign, select and the like).
  *
  * @param[in]   q             [6]   [rad]                    joint coordinates; norm at most 10000
  * @param[in]   dq            [6]   [rad/s]                  joint velocities; norm at most 100000
@@ -15,9 +15,9 @@
  *                                                           norm at most 1e+09
  * @param[in]   parameters    [78]                           standard parameters; norm at most 1e+09
  * @param[out]  ddq           [6]   [rad/s^2]                joint accelerations
- * @param[out]  ddq_by_q      [36]  [(rad/s^2) per (rad)]    d ddq / d q; 6 x 6, row-major
+ * @param[out]  ddq_by_q      [36]  [(rad/s^2) per rad]      d ddq / d q; 6 x 6, row-major
  * @param[out]  ddq_by_dq     [36]  [(rad/s^2) per (rad/s)]  d ddq / d dq; 6 x 6, row-major
- * @param[out]  ddq_by_input  [36]  [(rad/s^2) per (A)]      d ddq / d input; 6 x 6, row-major
+ * @param[out]  ddq_by_input  [36]  [(rad/s^2) per A]        d ddq / d input; 6 x 6, row-major
  *
  * Coordinates:
  *
@@ -111,11 +111,11 @@
  */
 #include "ariane6_private.h"
 
-#if ARIANE6_GENERATION != 0xBA206C14UL
+#if ARIANE6_GENERATION != 0x13CD28B3UL
 #error "ariane6.h and ariane6_forward_dynamics_derivatives_standard.c are of different generations: generate the arm again"
 #endif
 
-int ariane6_forward_dynamics_derivatives_standard(
+ariane6_status_t ariane6_forward_dynamics_derivatives_standard(
     const ariane6_real_t q[ARIANE6_N_JOINTS],
     const ariane6_real_t dq[ARIANE6_N_JOINTS],
     const ariane6_real_t input[ARIANE6_N_JOINTS],
@@ -129,7 +129,7 @@ int ariane6_forward_dynamics_derivatives_standard(
         M2, XX3, XY3, XZ3, YY3, YZ3, ZZ3, MX3, MY3, MZ3, M3, XX4, XY4, XZ4, YY4, YZ4, ZZ4, MX4, MY4, MZ4, M4,
         XX5, XY5, XZ5, YY5, YZ5, ZZ5, MX5, MY5, MZ5, M5, XX6, XY6, XZ6, YY6, YZ6, ZZ6, MX6, MY6, MZ6, M6, FV1,
         FC1, IA1, FV2, FC2, IA2, FV3, FC3, IA3, FV4, FC4, IA4, FV5, FC5, IA5, FV6, FC6, IA6 };
-    int status = ARIANE6_STATUS_OK;
+    ariane6_status_t status = ARIANE6_STATUS_OK;
 
     if (!ariane6_within_joints(q, ARIANE6_C(1.0e8))
         || !ariane6_within_joints(dq, ARIANE6_C(1.0e10))
@@ -171,16 +171,18 @@ int ariane6_forward_dynamics_derivatives_standard(
         ariane6_zero(ddq_by_input, 36);
         return ARIANE6_STATUS_PIVOT;
     }
+    /* link j6: column of the mass matrix */
     const ariane6_real_t t3 = t2 * parameters[MY6] + t1 * parameters[MX6];
     const ariane6_real_t t4 = ARIANE6_C(0.3) * t3 - (t1 * parameters[XZ6] + t2 * parameters[YZ6]);
     const ariane6_real_t t5 = ARIANE6_C(1.0) / t0;
     const ariane6_real_t t6 = t4 * t5;
-    const ariane6_real_t t7 = parameters[XX6] - parameters[YY6];
+    const ariane6_real_t t7 = parameters[XX6] - parameters[YY6]; /* link j6: inertia of it and all beyond */
     const ariane6_real_t t8 = t2 * t7 - parameters[XY6] * (ARIANE6_C(2.0) * t1);
     const ariane6_real_t t9 = t2 * t8;
     const ariane6_real_t t10 = ARIANE6_C(0.3) * parameters[M6];
     const ariane6_real_t t11 = ARIANE6_C(0.3) * (t10 + ARIANE6_C(2.0) * parameters[MZ6]);
     const ariane6_real_t t12 = parameters[ZZ5] + (parameters[XX6] - t9 + t11);
+    /* joint j5: drive */
     const ariane6_real_t t14 = ARIANE6_SQRT(ARIANE6_C(0.035496) * t13 + ARIANE6_C(0.097));
     const ariane6_real_t t15 = ARIANE6_C(-1.0) / t14;
     const ariane6_real_t t16 = ARIANE6_C(-3549.6000000000004) * t15;
@@ -202,20 +204,23 @@ int ariane6_forward_dynamics_derivatives_standard(
         ariane6_zero(ddq_by_input, 36);
         return ARIANE6_STATUS_PIVOT;
     }
+    /* link j6: inertia of it and all beyond */
     const ariane6_real_t t22 = parameters[XX5] + (parameters[YY6] + t9 + t11);
     const ariane6_real_t t23 = parameters[YY5] + parameters[ZZ6];
+    /* link j6: column of the mass matrix */
     const ariane6_real_t t24 = t1 * parameters[MY6] - t2 * parameters[MX6];
     const ariane6_real_t t25 = t1 * parameters[YZ6] - t2 * parameters[XZ6] + ARIANE6_C(-0.3) * t24;
-    const ariane6_real_t t26 = t25 - parameters[XY5];
+    const ariane6_real_t t26 = t25 - parameters[XY5]; /* link j6: inertia of it and all beyond */
+    /* link j5: inertia of it and all beyond */
     const ariane6_real_t t27 = t17 * (t23 - t22) - t26 * (ARIANE6_C(2.0) * t13);
     const ariane6_real_t t28 = t17 * t27;
     const ariane6_real_t t29 = parameters[ZZ4] + (t22 + t28);
     const ariane6_real_t t30 = t29 + ARIANE6_C(1.0e4) * parameters[IA4];
-    const ariane6_real_t t31 = t17 * parameters[ZZ6] - t13 * t25;
+    const ariane6_real_t t31 = t17 * parameters[ZZ6] - t13 * t25; /* link j6: column of the mass matrix */
     const ariane6_real_t t32 = t31 * t5;
-    const ariane6_real_t t33 = parameters[YZ5] + t4;
+    const ariane6_real_t t33 = parameters[YZ5] + t4; /* link j6: inertia of it and all beyond */
     const ariane6_real_t t34 = parameters[XY6] + t1 * t8 - parameters[XZ5];
-    const ariane6_real_t t35 = t13 * t34 - t17 * t33;
+    const ariane6_real_t t35 = t13 * t34 - t17 * t33; /* link j5: column of the mass matrix */
     const ariane6_real_t t36 = t35 + t31 * t6;
     const ariane6_real_t t37 = ARIANE6_C(1.0) / t20;
     const ariane6_real_t t38 = t36 * t37;
@@ -235,29 +240,31 @@ int ariane6_forward_dynamics_derivatives_standard(
         ariane6_zero(ddq_by_input, 36);
         return ARIANE6_STATUS_PIVOT;
     }
-    const ariane6_real_t t41 = t28 - t23 - parameters[XX4];
+    const ariane6_real_t t41 = t28 - t23 - parameters[XX4]; /* link j5: inertia of it and all beyond */
     const ariane6_real_t t42 = parameters[YY4] + t12;
-    const ariane6_real_t t44 = t17 * t34 + t13 * t33;
-    const ariane6_real_t t45 = parameters[XY4] + t44;
+    const ariane6_real_t t44 = t17 * t34 + t13 * t33; /* link j5: column of the mass matrix */
+    const ariane6_real_t t45 = parameters[XY4] + t44; /* link j5: inertia of it and all beyond */
+    /* link j4: inertia of it and all beyond */
     const ariane6_real_t t47 = t43 * (t41 + t42) + t45 * (ARIANE6_C(2.0) * t46);
     const ariane6_real_t t48 = t43 * t47;
-    const ariane6_real_t t49 = t3 - parameters[MZ5];
-    const ariane6_real_t t50 = parameters[MY4] + t49;
-    const ariane6_real_t t51 = t24 - parameters[MX5];
+    const ariane6_real_t t49 = t3 - parameters[MZ5]; /* link j6: inertia of it and all beyond */
+    const ariane6_real_t t50 = parameters[MY4] + t49; /* link j5: inertia of it and all beyond */
+    const ariane6_real_t t51 = t24 - parameters[MX5]; /* link j6: inertia of it and all beyond */
     const ariane6_real_t t52 = parameters[MZ6] + t10;
     const ariane6_real_t t53 = parameters[MY5] + t52;
-    const ariane6_real_t t54 = t13 * t53 + t17 * t51;
-    const ariane6_real_t t55 = t54 - parameters[MX4];
-    const ariane6_real_t t56 = t46 * t50 + t43 * t55;
-    const ariane6_real_t t57 = parameters[M5] + parameters[M6];
-    const ariane6_real_t t58 = parameters[M4] + t57;
-    const ariane6_real_t t59 = ARIANE6_C(0.17) * t58;
+    const ariane6_real_t t54 = t13 * t53 + t17 * t51; /* link j5: column of the mass matrix */
+    const ariane6_real_t t55 = t54 - parameters[MX4]; /* link j5: inertia of it and all beyond */
+    const ariane6_real_t t56 = t46 * t50 + t43 * t55; /* link j4: column of the mass matrix */
+    const ariane6_real_t t57 = parameters[M5] + parameters[M6]; /* link j6: inertia of it and all beyond */
+    const ariane6_real_t t58 = parameters[M4] + t57; /* link j5: inertia of it and all beyond */
+    const ariane6_real_t t59 = ARIANE6_C(0.17) * t58; /* link j4: inertia of it and all beyond */
     const ariane6_real_t t60 = ARIANE6_C(0.17) * (t59 + ARIANE6_C(2.0) * t56);
-    const ariane6_real_t t61 = t17 * t53 - t13 * t51;
-    const ariane6_real_t t62 = parameters[MZ4] + t61;
-    const ariane6_real_t t63 = ARIANE6_C(0.488) * t58;
+    const ariane6_real_t t61 = t17 * t53 - t13 * t51; /* link j5: column of the mass matrix */
+    const ariane6_real_t t62 = parameters[MZ4] + t61; /* link j5: inertia of it and all beyond */
+    const ariane6_real_t t63 = ARIANE6_C(0.488) * t58; /* link j4: inertia of it and all beyond */
     const ariane6_real_t t64 = ARIANE6_C(0.488) * (t63 + ARIANE6_C(2.0) * t62);
     const ariane6_real_t t65 = parameters[ZZ3] + (t48 - t41 + (t60 + t64));
+    /* joint j3: drive */
     const ariane6_real_t t68 = ARIANE6_C(0.052335956242943966) * t66 - ARIANE6_C(0.9986295347545738) * t67;
     const ariane6_real_t t69 = ARIANE6_C(0.052335956242943966) * t67 + ARIANE6_C(0.9986295347545738) * t66;
     const ariane6_real_t t70 = ARIANE6_SQRT(ARIANE6_C(-0.083776) * t69 + ARIANE6_C(0.38408000000000003));
@@ -265,19 +272,19 @@ int ariane6_forward_dynamics_derivatives_standard(
     const ariane6_real_t t72 = ARIANE6_C(8377.600000000002) * t71;
     const ariane6_real_t t73 = t68 * t72;
     const ariane6_real_t t74 = t65 + t73 * t73 * parameters[IA3];
-    const ariane6_real_t t75 = t17 * t25 + t13 * parameters[ZZ6];
+    const ariane6_real_t t75 = t17 * t25 + t13 * parameters[ZZ6]; /* link j6: column of the mass matrix */
     const ariane6_real_t t76 = t17 * t3;
     const ariane6_real_t t77 = t43 * t76 - t46 * t24;
     const ariane6_real_t t78 = t13 * t3;
     const ariane6_real_t t79 = t46 * t75 + t43 * t4 + (ARIANE6_C(0.17) * t78 + ARIANE6_C(0.488) * t77);
     const ariane6_real_t t80 = t79 * t5;
-    const ariane6_real_t t81 = t43 * t61;
+    const ariane6_real_t t81 = t43 * t61; /* link j5: column of the mass matrix */
     const ariane6_real_t t82 = t46 * t44 + t43 * t12 + (ARIANE6_C(0.17) * t54 + ARIANE6_C(0.488) * t81);
     const ariane6_real_t t83 = t79 * t6 - t82;
     const ariane6_real_t t84 = t83 * t37;
-    const ariane6_real_t t85 = t26 + t13 * t27 - parameters[XZ4];
+    const ariane6_real_t t85 = t26 + t13 * t27 - parameters[XZ4]; /* link j5: inertia of it and all beyond */
     const ariane6_real_t t86 = parameters[YZ4] + t35;
-    const ariane6_real_t t87 = t43 * t50 - t46 * t55;
+    const ariane6_real_t t87 = t43 * t50 - t46 * t55; /* link j4: column of the mass matrix */
     const ariane6_real_t t88 = t43 * t86 - t46 * t85 - ARIANE6_C(0.488) * t87;
     const ariane6_real_t t89 = t88 + t79 * t32 + t83 * t38;
     const ariane6_real_t t90 = ARIANE6_C(1.0) / t39;
@@ -298,27 +305,28 @@ int ariane6_forward_dynamics_derivatives_standard(
         ariane6_zero(ddq_by_input, 36);
         return ARIANE6_STATUS_PIVOT;
     }
-    const ariane6_real_t t94 = t56 + t59;
+    const ariane6_real_t t94 = t56 + t59; /* link j4: inertia of it and all beyond */
     const ariane6_real_t t95 = t94 - parameters[MX3];
     const ariane6_real_t t96 = t62 + t63;
     const ariane6_real_t t97 = parameters[MY3] + t96;
-    const ariane6_real_t t98 = t66 * t97 + t67 * t95;
+    const ariane6_real_t t98 = t66 * t97 + t67 * t95; /* link j3: column of the mass matrix */
     const ariane6_real_t t99 = ARIANE6_C(0.685) * t98 - t65;
-    const ariane6_real_t t100 = t66 * t77 + t67 * t78;
+    const ariane6_real_t t100 = t66 * t77 + t67 * t78; /* link j6: column of the mass matrix */
     const ariane6_real_t t101 = t79 + ARIANE6_C(-0.685) * t100;
-    const ariane6_real_t t102 = t66 * t81 + t67 * t54;
+    const ariane6_real_t t102 = t66 * t81 + t67 * t54; /* link j5: column of the mass matrix */
     const ariane6_real_t t103 = t82 + ARIANE6_C(-0.685) * t102;
     const ariane6_real_t t104 = t101 * t6 - t103;
-    const ariane6_real_t t105 = t66 * t87;
+    const ariane6_real_t t105 = t66 * t87; /* link j4: column of the mass matrix */
     const ariane6_real_t t106 = t88 + ARIANE6_C(0.685) * t105;
     const ariane6_real_t t107 = t106 + t101 * t32 + t104 * t38;
     const ariane6_real_t t108 = t99 + t101 * t80 + t104 * t84 + t107 * t91;
     const ariane6_real_t t109 = ARIANE6_C(1.0) / t92;
     const ariane6_real_t t110 = t108 * t109;
-    const ariane6_real_t t111 = parameters[M3] + t58;
-    const ariane6_real_t t112 = ARIANE6_C(0.685) * t111;
+    const ariane6_real_t t111 = parameters[M3] + t58; /* link j4: inertia of it and all beyond */
+    const ariane6_real_t t112 = ARIANE6_C(0.685) * t111; /* link j3: inertia of it and all beyond */
     const ariane6_real_t t113 = ARIANE6_C(0.685) * (t112 + ARIANE6_C(-2.0) * t98);
     const ariane6_real_t t114 = parameters[ZZ2] + (t65 + t113);
+    /* joint j2: drive */
     const ariane6_real_t t117 = ARIANE6_C(0.766044443118978) * t115 + ARIANE6_C(0.6427876096865393) * t116;
     const ariane6_real_t t118 = ARIANE6_C(0.766044443118978) * t116 - ARIANE6_C(0.6427876096865393) * t115;
     const ariane6_real_t t119 = ARIANE6_SQRT(ARIANE6_C(-0.126918) * t118 + ARIANE6_C(0.420682));
@@ -346,43 +354,50 @@ int ariane6_forward_dynamics_derivatives_standard(
         ariane6_zero(ddq_by_input, 36);
         return ARIANE6_STATUS_PIVOT;
     }
-    const ariane6_real_t t130 = t46 * t76 + t43 * t24;
+    const ariane6_real_t t130 = t46 * t76 + t43 * t24; /* link j6: column of the mass matrix */
     const ariane6_real_t t131 = t46 * t4 - t43 * t75 + ARIANE6_C(0.488) * t130;
     const ariane6_real_t t132 = t31 + ARIANE6_C(0.17) * t130;
     const ariane6_real_t t133 = t66 * t132 - t67 * t131;
     const ariane6_real_t t134 = t66 * t131 + t67 * t132 + ARIANE6_C(-0.685) * t130;
     const ariane6_real_t t135 = t116 * t134 - t115 * t133 + ARIANE6_C(-0.18) * t130;
     const ariane6_real_t t136 = t135 * t5;
+    /* link j4: inertia of it and all beyond */
     const ariane6_real_t t137 = parameters[XX3] + (t42 - t48 + t64);
     const ariane6_real_t t138 = parameters[YY3] + (t29 + t60);
-    const ariane6_real_t t139 = t43 * t85 + t46 * t86;
+    const ariane6_real_t t139 = t43 * t85 + t46 * t86; /* link j4: column of the mass matrix */
+    /* link j4: inertia of it and all beyond */
     const ariane6_real_t t140 = t139 + (ARIANE6_C(-0.17) * t62 + ARIANE6_C(-0.488) * t94) - parameters[XY3];
+    /* link j3: inertia of it and all beyond */
     const ariane6_real_t t141 = t67 * (t137 - t138) - t140 * (ARIANE6_C(-2.0) * t66);
     const ariane6_real_t t142 = t67 * t141;
     const ariane6_real_t t143 = parameters[XX2] + (t138 + t142);
     const ariane6_real_t t144 = parameters[YY2] + (t137 - t142 + t113);
-    const ariane6_real_t t145 = t66 * t95 - t67 * t97;
+    const ariane6_real_t t145 = t66 * t95 - t67 * t97; /* link j3: column of the mass matrix */
+    /* link j3: inertia of it and all beyond */
     const ariane6_real_t t146 = parameters[XY2] + (t66 * t141 - t140 + ARIANE6_C(0.685) * t145);
+    /* link j2: inertia of it and all beyond */
     const ariane6_real_t t147 = t116 * (t116 * (t144 - t143) + t146 * (ARIANE6_C(2.0) * t115));
-    const ariane6_real_t t148 = t145 - parameters[MY2];
+    const ariane6_real_t t148 = t145 - parameters[MY2]; /* link j3: inertia of it and all beyond */
     const ariane6_real_t t149 = t98 - t112;
     const ariane6_real_t t150 = t149 - parameters[MX2];
+    /* link j2: inertia of it and all beyond */
     const ariane6_real_t t151 = ARIANE6_C(0.18) * (parameters[M2] + t111) + ARIANE6_C(2.0) * (t115 * t148
         - t116 * t150);
+    /* joint j1: drive */
     const ariane6_real_t t153 = ARIANE6_SQRT(ARIANE6_C(0.0406334) * t152 + ARIANE6_C(0.10828541));
     const ariane6_real_t t154 = ARIANE6_C(1.0) / t153;
     const ariane6_real_t t155 = ARIANE6_C(-4063.3400000000006) * t154;
     const ariane6_real_t t157 = t156 * t155;
     const ariane6_real_t t158 = parameters[ZZ1] + (t143 + t147 + ARIANE6_C(0.18) * t151)
         + t157 * t157 * parameters[IA1];
-    const ariane6_real_t t159 = t46 * t61;
+    const ariane6_real_t t159 = t46 * t61; /* link j5: column of the mass matrix */
     const ariane6_real_t t160 = t46 * t12 - t43 * t44 + ARIANE6_C(0.488) * t159;
     const ariane6_real_t t161 = ARIANE6_C(0.17) * t159 - t35;
     const ariane6_real_t t162 = t66 * t161 - t67 * t160;
     const ariane6_real_t t163 = t66 * t160 + t67 * t161 + ARIANE6_C(-0.685) * t159;
     const ariane6_real_t t164 = t116 * t163 - t115 * t162 + ARIANE6_C(-0.18) * t159 - t135 * t6;
     const ariane6_real_t t165 = t164 * t37;
-    const ariane6_real_t t166 = t139 + ARIANE6_C(-0.488) * t56;
+    const ariane6_real_t t166 = t139 + ARIANE6_C(-0.488) * t56; /* link j4: column of the mass matrix */
     const ariane6_real_t t167 = t29 + ARIANE6_C(0.17) * t56;
     const ariane6_real_t t168 = t67 * t166 + t66 * t167;
     const ariane6_real_t t169 = t66 * t166 - t67 * t167 + ARIANE6_C(0.685) * t56;
@@ -390,14 +405,16 @@ int ariane6_forward_dynamics_derivatives_standard(
     const ariane6_real_t t171 = t170 - t164 * t38;
     const ariane6_real_t t172 = t171 * t90;
     const ariane6_real_t t173 = t158 - t135 * t136 - t164 * t165 - t171 * t172;
+    /* link j4: inertia of it and all beyond */
     const ariane6_real_t t174 = parameters[XZ3] + (t46 * t47 - t45 + ARIANE6_C(-0.17) * t87);
     const ariane6_real_t t175 = parameters[YZ3] - t88;
-    const ariane6_real_t t176 = t66 * t175 - t67 * t174;
+    const ariane6_real_t t176 = t66 * t175 - t67 * t174; /* link j3: column of the mass matrix */
     const ariane6_real_t t177 = t66 * t174 + t67 * t175;
     const ariane6_real_t t178 = t116 * t177 - t115 * t176 - t135 * t80 + t164 * t84;
     const ariane6_real_t t179 = t178 - t171 * t91;
     const ariane6_real_t t180 = t179 * t109;
-    const ariane6_real_t t181 = t87 - parameters[MZ3];
+    const ariane6_real_t t181 = t87 - parameters[MZ3]; /* link j4: inertia of it and all beyond */
+    /* link j3: inertia of it and all beyond */
     const ariane6_real_t t182 = t176 + ARIANE6_C(-0.685) * t181 - parameters[XZ2];
     const ariane6_real_t t183 = parameters[YZ2] + t177;
     const ariane6_real_t t184 = t116 * t183 - t115 * t182 - t135 * t124 + t164 * t125;
@@ -420,70 +437,72 @@ int ariane6_forward_dynamics_derivatives_standard(
         ariane6_zero(ddq_by_input, 36);
         return ARIANE6_STATUS_PIVOT;
     }
-    const ariane6_real_t t190 = dq[0] * dq[0];
-    const ariane6_real_t t191 = ARIANE6_C(0.18) * t190;
+    const ariane6_real_t t190 = dq[0] * dq[0]; /* link j1: motion */
+    const ariane6_real_t t191 = ARIANE6_C(0.18) * t190; /* link j2: motion */
     const ariane6_real_t t192 = t116 * t191 + ARIANE6_C(-9.81) * t115;
     const ariane6_real_t t193 = t116 * dq[0];
     const ariane6_real_t t194 = t193 * t193;
     const ariane6_real_t t195 = dq[1] * dq[1];
-    const ariane6_real_t t196 = t192 + ARIANE6_C(0.685) * (t194 + t195);
+    const ariane6_real_t t196 = t192 + ARIANE6_C(0.685) * (t194 + t195); /* link j3: motion */
     const ariane6_real_t t197 = t67 * t196;
-    const ariane6_real_t t198 = t115 * t191 + ARIANE6_C(9.81) * t116;
+    const ariane6_real_t t198 = t115 * t191 + ARIANE6_C(9.81) * t116; /* link j2: motion */
     const ariane6_real_t t199 = t115 * dq[0];
     const ariane6_real_t t200 = t199 * t193;
-    const ariane6_real_t t201 = ARIANE6_C(-0.685) * t200 - t198;
+    const ariane6_real_t t201 = ARIANE6_C(-0.685) * t200 - t198; /* link j3: motion */
     const ariane6_real_t t202 = t197 + t66 * t201;
     const ariane6_real_t t203 = t67 * t193 - t66 * t199;
     const ariane6_real_t t204 = t203 * t203;
     const ariane6_real_t t205 = dq[1] + dq[2];
     const ariane6_real_t t206 = t205 * t205;
-    const ariane6_real_t t207 = t206 + t204;
-    const ariane6_real_t t208 = t67 * t199 + t66 * t193;
+    const ariane6_real_t t207 = t206 + t204; /* link j4: motion */
+    const ariane6_real_t t208 = t67 * t199 + t66 * t193; /* link j3: motion */
     const ariane6_real_t t209 = t208 * t203;
+    /* link j4: motion */
     const ariane6_real_t t210 = t202 + (ARIANE6_C(-0.17) * t207 + ARIANE6_C(-0.488) * t209);
-    const ariane6_real_t t211 = t205 * t208;
+    const ariane6_real_t t211 = t205 * t208; /* link j3: motion */
     const ariane6_real_t t212 = t205 * t203;
-    const ariane6_real_t t213 = dq[1] * t199;
-    const ariane6_real_t t214 = ARIANE6_C(1.37) * t213;
+    const ariane6_real_t t213 = dq[1] * t199; /* link j2: motion */
+    const ariane6_real_t t214 = ARIANE6_C(1.37) * t213; /* link j3: motion */
+    /* link j4: motion */
     const ariane6_real_t t215 = t214 - (ARIANE6_C(0.34) * t211 + ARIANE6_C(-0.976) * t212);
     const ariane6_real_t t216 = t43 * t210 + t46 * t215;
-    const ariane6_real_t t217 = t66 * t196;
+    const ariane6_real_t t217 = t66 * t196; /* link j3: motion */
     const ariane6_real_t t218 = t67 * t201 - t217;
     const ariane6_real_t t219 = t208 * t208;
-    const ariane6_real_t t220 = t206 + t219;
+    const ariane6_real_t t220 = t206 + t219; /* link j4: motion */
     const ariane6_real_t t221 = t218 + (ARIANE6_C(0.17) * t209 + ARIANE6_C(0.488) * t220);
-    const ariane6_real_t t222 = t13 * t216 - t17 * t221;
-    const ariane6_real_t t223 = t46 * t205;
+    const ariane6_real_t t222 = t13 * t216 - t17 * t221; /* link j5: motion */
+    const ariane6_real_t t223 = t46 * t205; /* link j4: motion */
     const ariane6_real_t t224 = t43 * t208 - t223;
     const ariane6_real_t t225 = dq[3] + t203;
-    const ariane6_real_t t226 = t17 * t224 + t13 * t225;
+    const ariane6_real_t t226 = t17 * t224 + t13 * t225; /* link j5: motion */
     const ariane6_real_t t227 = t226 * t226;
-    const ariane6_real_t t228 = t43 * t205;
+    const ariane6_real_t t228 = t43 * t205; /* link j4: motion */
     const ariane6_real_t t229 = t228 + t46 * t208;
-    const ariane6_real_t t230 = dq[4] + t229;
+    const ariane6_real_t t230 = dq[4] + t229; /* link j5: motion */
     const ariane6_real_t t231 = t230 * t230;
-    const ariane6_real_t t232 = t227 + t231;
+    const ariane6_real_t t232 = t227 + t231; /* link j6: motion */
     const ariane6_real_t t233 = t222 - ARIANE6_C(0.3) * t232;
-    const ariane6_real_t t234 = t17 * t216 + t13 * t221;
-    const ariane6_real_t t235 = ARIANE6_C(2.0) * t212;
+    const ariane6_real_t t234 = t17 * t216 + t13 * t221; /* link j5: motion */
+    const ariane6_real_t t235 = ARIANE6_C(2.0) * t212; /* link j4: motion */
     const ariane6_real_t t236 = t46 * t235 - t43 * t209;
     const ariane6_real_t t237 = t224 * t225;
     const ariane6_real_t t238 = t236 + t237;
-    const ariane6_real_t t239 = t17 * t225 - t13 * t224;
+    const ariane6_real_t t239 = t17 * t225 - t13 * t224; /* link j5: motion */
     const ariane6_real_t t240 = t226 * t239;
-    const ariane6_real_t t241 = t238 - t240;
+    const ariane6_real_t t241 = t238 - t240; /* link j6: motion */
     const ariane6_real_t t242 = t234 + ARIANE6_C(0.3) * t241;
-    const ariane6_real_t t243 = t46 * t210 - t43 * t215;
+    const ariane6_real_t t243 = t46 * t210 - t43 * t215; /* link j4: motion */
     const ariane6_real_t t244 = t46 * t209 + t43 * t235;
     const ariane6_real_t t245 = t229 * t225;
     const ariane6_real_t t246 = t244 - t245;
-    const ariane6_real_t t247 = t246 - t245;
-    const ariane6_real_t t248 = t224 * t229;
-    const ariane6_real_t t249 = t248 - t211;
+    const ariane6_real_t t247 = t246 - t245; /* link j5: motion */
+    const ariane6_real_t t248 = t224 * t229; /* link j4: motion */
+    const ariane6_real_t t249 = t248 - t211; /* link j5: motion */
     const ariane6_real_t t250 = t13 * t249 + t17 * t247;
     const ariane6_real_t t251 = t239 * t230;
     const ariane6_real_t t252 = t250 + t251;
-    const ariane6_real_t t253 = t251 + t252;
+    const ariane6_real_t t253 = t251 + t252; /* link j6: motion */
     const ariane6_real_t t254 = t243 - ARIANE6_C(0.3) * t253;
     const ariane6_real_t t255 = t1 * t242 + t2 * t254;
     const ariane6_real_t t256 = t2 * t253 - t1 * t241;
@@ -491,30 +510,32 @@ int ariane6_forward_dynamics_derivatives_standard(
     const ariane6_real_t t258 = dq[5] + t239;
     const ariane6_real_t t259 = t257 * t258;
     const ariane6_real_t t260 = t256 - t259;
-    const ariane6_real_t t261 = parameters[ZZ6] - parameters[YY6];
-    const ariane6_real_t t262 = t2 * t241 + t1 * t253;
+    const ariane6_real_t t261 = parameters[ZZ6] - parameters[YY6]; /* link j6: force and moment */
+    const ariane6_real_t t262 = t2 * t241 + t1 * t253; /* link j6: motion */
     const ariane6_real_t t263 = t2 * t226 - t1 * t230;
     const ariane6_real_t t264 = t263 * t258;
     const ariane6_real_t t265 = t262 + t264;
-    const ariane6_real_t t266 = t264 + t265;
-    const ariane6_real_t t267 = t13 * t247 - t17 * t249;
+    const ariane6_real_t t266 = t264 + t265; /* link j6: force and moment */
+    const ariane6_real_t t267 = t13 * t247 - t17 * t249; /* link j5: motion */
     const ariane6_real_t t268 = t226 * t230;
     const ariane6_real_t t269 = t267 + t268;
-    const ariane6_real_t t270 = t263 * t257;
-    const ariane6_real_t t271 = t269 + t270;
+    const ariane6_real_t t270 = t263 * t257; /* link j6: motion */
+    const ariane6_real_t t271 = t269 + t270; /* link j6: force and moment */
     const ariane6_real_t t272 = t259 * t261 - parameters[XX6] * t260 + parameters[XY6] * t266
         + parameters[XZ6] * t271;
-    const ariane6_real_t t273 = t257 * t257;
+    const ariane6_real_t t273 = t257 * t257; /* link j6: motion */
     const ariane6_real_t t274 = t258 * t258;
+    /* link j6: force and moment */
     const ariane6_real_t t275 = t272 - parameters[YZ6] * (t273 - t274) - (parameters[MY6] * t233
         - parameters[MZ6] * t255);
-    const ariane6_real_t t276 = t2 * t242 - t1 * t254;
-    const ariane6_real_t t277 = parameters[ZZ6] - parameters[XX6];
+    const ariane6_real_t t276 = t2 * t242 - t1 * t254; /* link j6: motion */
+    const ariane6_real_t t277 = parameters[ZZ6] - parameters[XX6]; /* link j6: force and moment */
     const ariane6_real_t t278 = t260 - t259;
     const ariane6_real_t t279 = t270 - t269;
     const ariane6_real_t t280 = parameters[XY6] * t278 - (parameters[YY6] * t265 + t264 * t277)
         + parameters[YZ6] * t279;
-    const ariane6_real_t t281 = t263 * t263;
+    const ariane6_real_t t281 = t263 * t263; /* link j6: motion */
+    /* link j6: force and moment */
     const ariane6_real_t t282 = t280 + parameters[XZ6] * (t274 - t281) - (parameters[MZ6] * t276
         + parameters[MX6] * t233);
     const ariane6_real_t t283 = parameters[MX6] * (t273 + t274) + parameters[MY6] * t279
@@ -523,112 +544,136 @@ int ariane6_forward_dynamics_derivatives_standard(
     const ariane6_real_t t285 = parameters[MX6] * t271 + parameters[MY6] * (t281 + t274)
         + parameters[MZ6] * t256;
     const ariane6_real_t t286 = parameters[M6] * t255 - t285;
-    const ariane6_real_t t287 = t1 * t284 - t2 * t286;
-    const ariane6_real_t t288 = parameters[YY5] - parameters[ZZ5];
-    const ariane6_real_t t289 = t268 + t269;
+    const ariane6_real_t t287 = t1 * t284 - t2 * t286; /* link j6: what it passes on */
+    const ariane6_real_t t288 = parameters[YY5] - parameters[ZZ5]; /* link j5: force and moment */
+    const ariane6_real_t t289 = t268 + t269; /* link j6: motion */
     const ariane6_real_t t290 = t238 + t240;
+    /* link j5: force and moment */
     const ariane6_real_t t291 = t251 * t288 - parameters[XX5] * t252 + parameters[XY5] * t289
         - parameters[XZ5] * t290;
-    const ariane6_real_t t292 = t239 * t239;
+    const ariane6_real_t t292 = t239 * t239; /* link j5: motion */
+    /* link j5: force and moment */
     const ariane6_real_t t293 = t291 + parameters[YZ5] * (t231 - t292) + (parameters[MY5] * t243
         + parameters[MZ5] * t222);
+    /* link j6: what it passes on */
     const ariane6_real_t t294 = t293 + (t2 * t275 + t1 * t282 + ARIANE6_C(-0.3) * t287);
-    const ariane6_real_t t295 = parameters[ZZ5] - parameters[XX5];
+    const ariane6_real_t t295 = parameters[ZZ5] - parameters[XX5]; /* link j5: force and moment */
     const ariane6_real_t t296 = parameters[XY5] * t253 - (parameters[YY5] * t269 + t268 * t295)
         + parameters[YZ5] * t241;
     const ariane6_real_t t297 = t296 + parameters[XZ5] * (t231 - t227) + (parameters[MX5] * t243
         - parameters[MZ5] * t234);
+    /* link j6: force and moment */
     const ariane6_real_t t298 = t7 * t270 - parameters[ZZ6] * t269 - parameters[YZ6] * t262
         + parameters[XZ6] * t256;
     const ariane6_real_t t299 = t298 + parameters[XY6] * (t281 - t273) + (parameters[MX6] * t255
         + parameters[MY6] * t276);
-    const ariane6_real_t t300 = t297 + t299;
-    const ariane6_real_t t301 = parameters[YY4] - parameters[ZZ4];
-    const ariane6_real_t t302 = t237 + t238;
+    const ariane6_real_t t300 = t297 + t299; /* link j6: what it passes on */
+    const ariane6_real_t t301 = parameters[YY4] - parameters[ZZ4]; /* link j4: force and moment */
+    const ariane6_real_t t302 = t237 + t238; /* link j5: motion */
     const ariane6_real_t t303 = t211 + t248;
+    /* link j4: force and moment */
     const ariane6_real_t t304 = parameters[XY4] * t302 - (parameters[XX4] * t246 + t245 * t301)
         + parameters[XZ4] * t303;
-    const ariane6_real_t t305 = t229 * t229;
+    const ariane6_real_t t305 = t229 * t229; /* link j4: motion */
     const ariane6_real_t t306 = t225 * t225;
+    /* link j4: force and moment */
     const ariane6_real_t t307 = t304 + parameters[YZ4] * (t306 - t305) + (parameters[MY4] * t221
         + parameters[MZ4] * t243);
-    const ariane6_real_t t308 = t307 + (t17 * t294 + t13 * t300);
-    const ariane6_real_t t309 = t2 * t284 + t1 * t286;
-    const ariane6_real_t t310 = parameters[XX5] - parameters[YY5];
+    const ariane6_real_t t308 = t307 + (t17 * t294 + t13 * t300); /* link j5: what it passes on */
+    const ariane6_real_t t309 = t2 * t284 + t1 * t286; /* link j6: what it passes on */
+    const ariane6_real_t t310 = parameters[XX5] - parameters[YY5]; /* link j5: force and moment */
     const ariane6_real_t t311 = t240 * t310 - parameters[ZZ5] * t238 + parameters[YZ5] * t267
         - parameters[XZ5] * t250;
     const ariane6_real_t t312 = t311 + parameters[XY5] * (t292 - t227) - (parameters[MX5] * t222
         + parameters[MY5] * t234);
+    /* link j6: what it passes on */
     const ariane6_real_t t313 = t312 + (t2 * t282 - t1 * t275 + ARIANE6_C(-0.3) * t309);
-    const ariane6_real_t t314 = parameters[ZZ4] - parameters[XX4];
+    const ariane6_real_t t314 = parameters[ZZ4] - parameters[XX4]; /* link j4: force and moment */
     const ariane6_real_t t315 = parameters[XY4] * t247 - (parameters[YY4] * t238 + t237 * t314)
         + parameters[YZ4] * t249;
-    const ariane6_real_t t316 = t224 * t224;
+    const ariane6_real_t t316 = t224 * t224; /* link j4: motion */
+    /* link j4: force and moment */
     const ariane6_real_t t317 = t315 + parameters[XZ4] * (t306 - t316) + (parameters[MX4] * t221
         - parameters[MZ4] * t216);
-    const ariane6_real_t t318 = t317 + t313;
+    const ariane6_real_t t318 = t317 + t313; /* link j5: what it passes on */
+    /* link j5: force and moment */
     const ariane6_real_t t319 = parameters[MX5] * (t292 + t231) + parameters[MY5] * t241
         + parameters[MZ5] * t267;
-    const ariane6_real_t t320 = parameters[M5] * t234 + t319 + t309;
+    const ariane6_real_t t320 = parameters[M5] * t234 + t319 + t309; /* link j6: what it passes on */
+    /* link j6: force and moment */
     const ariane6_real_t t321 = parameters[MX6] * t266 + parameters[MY6] * t278 - parameters[MZ6] * (t281
         + t273);
+    /* link j5: force and moment */
     const ariane6_real_t t322 = parameters[M5] * t222 + (parameters[MX5] * t290 - parameters[MY5] * t232
         - parameters[MZ5] * t250);
-    const ariane6_real_t t323 = t322 + (parameters[M6] * t233 + t321);
+    const ariane6_real_t t323 = t322 + (parameters[M6] * t233 + t321); /* link j6: what it passes on */
+    /* link j4: force and moment */
     const ariane6_real_t t324 = parameters[MX4] * (t305 + t306) + parameters[MY4] * t249
         + parameters[MZ4] * t236;
+    /* link j5: what it passes on */
     const ariane6_real_t t325 = parameters[M4] * t216 + t324 + (t17 * t320 + t13 * t323);
+    /* link j5: force and moment */
     const ariane6_real_t t326 = parameters[MX5] * t289 + parameters[MY5] * t253 - parameters[MZ5] * (t227
         + t292);
+    /* link j4: force and moment */
     const ariane6_real_t t327 = parameters[MX4] * t303 + parameters[MY4] * (t316 + t306)
         + parameters[MZ4] * t244;
+    /* link j5: what it passes on */
     const ariane6_real_t t328 = t327 - parameters[M4] * t243 + (t326 - parameters[M5] * t243 + t287);
-    const ariane6_real_t t329 = t46 * t325 + t43 * t328;
-    const ariane6_real_t t330 = parameters[ZZ3] - parameters[YY3];
-    const ariane6_real_t t331 = ARIANE6_C(2.0) * t211;
+    const ariane6_real_t t329 = t46 * t325 + t43 * t328; /* link j4: what it passes on */
+    const ariane6_real_t t330 = parameters[ZZ3] - parameters[YY3]; /* link j3: force and moment */
+    const ariane6_real_t t331 = ARIANE6_C(2.0) * t211; /* link j4: motion */
+    /* link j3: force and moment */
     const ariane6_real_t t332 = parameters[XY3] * t331 - (parameters[XX3] * t212 + t212 * t330)
         - parameters[XZ3] * t209;
     const ariane6_real_t t333 = t332 + parameters[YZ3] * (t206 - t204) - (parameters[MY3] * t214
         + parameters[MZ3] * t218);
+    /* link j4: what it passes on */
     const ariane6_real_t t334 = t333 + (t43 * t308 + t46 * t318 + ARIANE6_C(-0.488) * t329);
-    const ariane6_real_t t335 = parameters[YY4] - parameters[XX4];
+    const ariane6_real_t t335 = parameters[YY4] - parameters[XX4]; /* link j4: force and moment */
     const ariane6_real_t t336 = parameters[ZZ4] * t211 + t248 * t335 + parameters[YZ4] * t236
         - parameters[XZ4] * t244;
     const ariane6_real_t t337 = t336 - parameters[XY4] * (t316 - t305) - (parameters[MX4] * t243
         + parameters[MY4] * t216);
-    const ariane6_real_t t338 = t337 + (t13 * t294 - t17 * t300);
-    const ariane6_real_t t339 = parameters[ZZ3] - parameters[XX3];
+    const ariane6_real_t t338 = t337 + (t13 * t294 - t17 * t300); /* link j5: what it passes on */
+    const ariane6_real_t t339 = parameters[ZZ3] - parameters[XX3]; /* link j3: force and moment */
     const ariane6_real_t t340 = parameters[YY3] * t211 + t211 * t339 - parameters[XY3] * t235
         + parameters[YZ3] * t209;
     const ariane6_real_t t341 = t340 - parameters[XZ3] * (t206 - t219) + (parameters[MZ3] * t202
         + parameters[MX3] * t214);
-    const ariane6_real_t t342 = t341 + (t338 - ARIANE6_C(0.17) * t329);
-    const ariane6_real_t t343 = dq[1] * t193;
-    const ariane6_real_t t344 = t343 * (parameters[YY2] - parameters[ZZ2]);
-    const ariane6_real_t t345 = ARIANE6_C(2.0) * t213;
+    const ariane6_real_t t342 = t341 + (t338 - ARIANE6_C(0.17) * t329); /* link j4: what it passes on */
+    const ariane6_real_t t343 = dq[1] * t193; /* link j2: motion */
+    const ariane6_real_t t344 = t343 * (parameters[YY2] - parameters[ZZ2]); /* link j2: force and moment */
+    const ariane6_real_t t345 = ARIANE6_C(2.0) * t213; /* link j2: motion */
+    /* link j2: force and moment */
     const ariane6_real_t t346 = t344 - t343 * parameters[XX2] + t345 * parameters[XY2]
         - t200 * parameters[XZ2];
     const ariane6_real_t t347 = (t194 - t195) * parameters[YZ2];
     const ariane6_real_t t348 = t198 * parameters[MZ2];
+    /* link j3: what it passes on */
     const ariane6_real_t t349 = t346 - t347 + t348 + (t67 * t334 - t66 * t342);
+    /* link j3: force and moment */
     const ariane6_real_t t350 = parameters[MX3] * t331 + parameters[MY3] * t235 - parameters[MZ3] * (t219
         + t204);
-    const ariane6_real_t t351 = parameters[M3] * t214 + t350 + t329;
-    const ariane6_real_t t352 = t213 * (parameters[ZZ2] - parameters[XX2]);
-    const ariane6_real_t t353 = ARIANE6_C(2.0) * t343;
+    const ariane6_real_t t351 = parameters[M3] * t214 + t350 + t329; /* link j4: what it passes on */
+    const ariane6_real_t t352 = t213 * (parameters[ZZ2] - parameters[XX2]); /* link j2: force and moment */
+    const ariane6_real_t t353 = ARIANE6_C(2.0) * t343; /* link j2: motion */
+    /* link j2: force and moment */
     const ariane6_real_t t354 = t213 * parameters[YY2] + t352 - t353 * parameters[XY2]
         + t200 * parameters[YZ2];
-    const ariane6_real_t t355 = t199 * t199;
-    const ariane6_real_t t356 = (t355 - t195) * parameters[XZ2];
+    const ariane6_real_t t355 = t199 * t199; /* link j2: motion */
+    const ariane6_real_t t356 = (t355 - t195) * parameters[XZ2]; /* link j2: force and moment */
     const ariane6_real_t t357 = t192 * parameters[MZ2];
+    /* link j3: what it passes on */
     const ariane6_real_t t358 = t354 + t356 + t357 + (t66 * t334 + t67 * t342 + ARIANE6_C(0.685) * t351);
-    const ariane6_real_t t359 = t355 + t194;
-    const ariane6_real_t t360 = t359 * parameters[MZ2];
+    const ariane6_real_t t359 = t355 + t194; /* link j3: motion */
+    const ariane6_real_t t360 = t359 * parameters[MZ2]; /* link j2: force and moment */
+    /* link j2: what it passes on */
     const ariane6_real_t t361 = ARIANE6_C(0.18) * (t345 * parameters[MX2] + t353 * parameters[MY2] - t360
         + t351);
     const ariane6_real_t t362 = t157 * dq[0];
-    const ariane6_real_t t363 = ariane6_sign(t362);
-    const ariane6_real_t t364 = ARIANE6_C(82.55365977800001) * (t154 * t154);
+    const ariane6_real_t t363 = ariane6_sign(t362); /* joint j1: coulomb_friction */
+    const ariane6_real_t t364 = ARIANE6_C(82.55365977800001) * (t154 * t154); /* joint j1: drive */
     const ariane6_real_t t365 = t156 * t156;
     const ariane6_real_t t366 = ARIANE6_C(4063.3400000000006) * t152 + t364 * t365;
     const ariane6_real_t t367 = t154 * t366;
@@ -636,13 +681,13 @@ int ariane6_forward_dynamics_derivatives_standard(
         + t367 * t190 * parameters[IA1];
     const ariane6_real_t t369 = t115 * t349 + t116 * t358 + t361 - t157 * t368;
     const ariane6_real_t t370 = ARIANE6_C(0.004) * t157;
-    const ariane6_real_t t371 = ariane6_sign(dq[5]);
+    const ariane6_real_t t371 = ariane6_sign(dq[5]); /* joint j6: coulomb_friction */
     const ariane6_real_t t372 = ARIANE6_C(1.0e2) * (ARIANE6_C(1.0e2) * dq[5] * parameters[FV6]
         + t371 * parameters[FC6]) + t299;
     const ariane6_real_t t373 = ARIANE6_C(5.0) * input[5] - t372;
     const ariane6_real_t t374 = t18 * dq[4];
-    const ariane6_real_t t375 = ariane6_sign(t374);
-    const ariane6_real_t t376 = ARIANE6_C(-62.9983008) * (t15 * t15);
+    const ariane6_real_t t375 = ariane6_sign(t374); /* joint j5: coulomb_friction */
+    const ariane6_real_t t376 = ARIANE6_C(-62.9983008) * (t15 * t15); /* joint j5: drive */
     const ariane6_real_t t377 = t17 * t17;
     const ariane6_real_t t378 = ARIANE6_C(3549.6000000000004) * t13 - t376 * t377;
     const ariane6_real_t t379 = t15 * t378;
@@ -652,22 +697,25 @@ int ariane6_forward_dynamics_derivatives_standard(
     const ariane6_real_t t382 = ARIANE6_C(0.004) * t18;
     const ariane6_real_t t383 = input[4] * t382 - (t18 * t381 - t313) - t373 * t6;
     const ariane6_real_t t384 = t369 - input[0] * t370 - t373 * t136 - t383 * t165;
-    const ariane6_real_t t385 = ariane6_sign(dq[3]);
+    const ariane6_real_t t385 = ariane6_sign(dq[3]); /* joint j4: coulomb_friction */
     const ariane6_real_t t386 = ARIANE6_C(1.0e2) * (ARIANE6_C(1.0e2) * dq[3] * parameters[FV4]
         + t385 * parameters[FC4]) - t338;
     const ariane6_real_t t387 = ARIANE6_C(5.0) * input[3] - t386 - t373 * t32 + t383 * t38;
-    const ariane6_real_t t388 = t43 * t325 - t46 * t328;
+    const ariane6_real_t t388 = t43 * t325 - t46 * t328; /* link j4: what it passes on */
+    /* link j4: force and moment */
     const ariane6_real_t t389 = parameters[MZ4] * (t316 + t305) - (parameters[MX4] * t302
         + parameters[MY4] * t247);
+    /* link j5: what it passes on */
     const ariane6_real_t t390 = parameters[M4] * t221 + t389 + (t13 * t320 - t17 * t323);
+    /* link j4: what it passes on */
     const ariane6_real_t t391 = t46 * t308 - t43 * t318 - (ARIANE6_C(-0.17) * t390 - ARIANE6_C(0.488) * t388);
-    const ariane6_real_t t392 = parameters[YY3] - parameters[XX3];
+    const ariane6_real_t t392 = parameters[YY3] - parameters[XX3]; /* link j3: force and moment */
     const ariane6_real_t t393 = t209 * t392 + parameters[XY3] * (t219 - t204) + (parameters[MY3] * t202
         - parameters[MX3] * t218);
-    const ariane6_real_t t394 = t393 + t391;
+    const ariane6_real_t t394 = t393 + t391; /* link j4: what it passes on */
     const ariane6_real_t t395 = t73 * dq[2];
-    const ariane6_real_t t396 = ariane6_sign(t395);
-    const ariane6_real_t t397 = ARIANE6_C(350.9209088000001) * (t71 * t71);
+    const ariane6_real_t t396 = ariane6_sign(t395); /* joint j3: coulomb_friction */
+    const ariane6_real_t t397 = ARIANE6_C(350.9209088000001) * (t71 * t71); /* joint j3: drive */
     const ariane6_real_t t398 = t68 * t68;
     const ariane6_real_t t399 = ARIANE6_C(8377.600000000002) * t69 - t397 * t398;
     const ariane6_real_t t400 = t71 * t399;
@@ -677,17 +725,19 @@ int ariane6_forward_dynamics_derivatives_standard(
     const ariane6_real_t t403 = ARIANE6_C(0.004) * t73;
     const ariane6_real_t t404 = input[2] * t403 - (t73 * t402 + t394) - t373 * t80;
     const ariane6_real_t t405 = t404 + t383 * t84 + t387 * t91;
+    /* link j4: what it passes on */
     const ariane6_real_t t406 = parameters[M3] * t202 + (parameters[MX3] * t207 - parameters[MY3] * t209)
         + t388;
     const ariane6_real_t t407 = parameters[M3] * t218 + (parameters[MY3] * t220 - parameters[MX3] * t209)
         + t390;
-    const ariane6_real_t t408 = (t194 - t355) * parameters[XY2];
+    const ariane6_real_t t408 = (t194 - t355) * parameters[XY2]; /* link j2: force and moment */
     const ariane6_real_t t409 = t200 * (parameters[XX2] - parameters[YY2]);
     const ariane6_real_t t410 = t198 * parameters[MX2] + t192 * parameters[MY2];
+    /* link j3: what it passes on */
     const ariane6_real_t t411 = t409 + t408 - t410 - (t394 - ARIANE6_C(0.685) * (t66 * t406 + t67 * t407));
     const ariane6_real_t t412 = t122 * dq[1];
-    const ariane6_real_t t413 = ariane6_sign(t412);
-    const ariane6_real_t t414 = ARIANE6_C(805.4089362000002) * (t120 * t120);
+    const ariane6_real_t t413 = ariane6_sign(t412); /* joint j2: coulomb_friction */
+    const ariane6_real_t t414 = ARIANE6_C(805.4089362000002) * (t120 * t120); /* joint j2: drive */
     const ariane6_real_t t415 = t117 * t117;
     const ariane6_real_t t416 = ARIANE6_C(12691.800000000003) * t118 - t414 * t415;
     const ariane6_real_t t417 = t120 * t416;
@@ -713,7 +763,7 @@ int ariane6_forward_dynamics_derivatives_standard(
     const ariane6_real_t t431 = ariane6_bounded(t430 - t32 * t427 - t6 * t429);
     ddq[5] = t431;
     const ariane6_real_t t432 = t425 + t426;
-    const ariane6_real_t t433 = t115 * t67 + t116 * t66;
+    const ariane6_real_t t433 = t115 * t67 + t116 * t66; /* link j3: motion */
     const ariane6_real_t t434 = dq[0] * t433;
     const ariane6_real_t t435 = t115 * t66 - t116 * t67;
     const ariane6_real_t t436 = dq[0] * t435;
@@ -724,20 +774,20 @@ int ariane6_forward_dynamics_derivatives_standard(
     const ariane6_real_t t441 = t440 - t439;
     const ariane6_real_t t442 = t440 + t441;
     const ariane6_real_t t443 = t43 * t438 - t46 * t442;
-    const ariane6_real_t t444 = t43 * t434 - t223;
+    const ariane6_real_t t444 = t43 * t434 - t223; /* link j4: motion */
     const ariane6_real_t t445 = dq[3] - t436;
     const ariane6_real_t t446 = t444 * t445;
     const ariane6_real_t t447 = t446 + t443;
     const ariane6_real_t t448 = t429 + t447;
-    const ariane6_real_t t449 = t17 * t444 + t13 * t445;
+    const ariane6_real_t t449 = t17 * t444 + t13 * t445; /* link j5: motion */
     const ariane6_real_t t450 = t13 * t444 - t17 * t445;
     const ariane6_real_t t451 = t449 * t450;
     const ariane6_real_t t452 = t451 + t448;
     const ariane6_real_t t453 = t435 * t424;
-    const ariane6_real_t t454 = t434 * t205;
+    const ariane6_real_t t454 = t434 * t205; /* link j3: motion */
     const ariane6_real_t t455 = t454 + t453;
     const ariane6_real_t t456 = t455 - t427;
-    const ariane6_real_t t457 = t46 * t434 + t228;
+    const ariane6_real_t t457 = t46 * t434 + t228; /* link j4: motion */
     const ariane6_real_t t458 = t444 * t457;
     const ariane6_real_t t459 = t456 - t458;
     const ariane6_real_t t460 = t46 * t438 + t43 * t442;
@@ -745,12 +795,12 @@ int ariane6_forward_dynamics_derivatives_standard(
     const ariane6_real_t t462 = t461 + t460;
     const ariane6_real_t t463 = t461 + t462;
     const ariane6_real_t t464 = t13 * t459 + t17 * t463;
-    const ariane6_real_t t465 = dq[4] + t457;
+    const ariane6_real_t t465 = dq[4] + t457; /* link j5: motion */
     const ariane6_real_t t466 = t450 * t465;
     const ariane6_real_t t467 = t466 + t464;
     const ariane6_real_t t468 = t466 + t467;
     const ariane6_real_t t469 = t1 * t452 + t2 * t468;
-    const ariane6_real_t t470 = t1 * t449 + t2 * t465;
+    const ariane6_real_t t470 = t1 * t449 + t2 * t465; /* link j6: motion */
     const ariane6_real_t t471 = dq[5] - t450;
     const ariane6_real_t t472 = t470 * t471;
     const ariane6_real_t t473 = t472 + t469;
@@ -760,10 +810,10 @@ int ariane6_forward_dynamics_derivatives_standard(
     const ariane6_real_t t477 = t476 + t474;
     const ariane6_real_t t478 = t476 + t477;
     const ariane6_real_t t479 = t17 * t459 - t13 * t463;
-    const ariane6_real_t t480 = t449 * t465;
+    const ariane6_real_t t480 = t449 * t465; /* link j5: motion */
     const ariane6_real_t t481 = t480 + t479;
     const ariane6_real_t t482 = t481 - t431;
-    const ariane6_real_t t483 = t475 * t470;
+    const ariane6_real_t t483 = t475 * t470; /* link j6: motion */
     const ariane6_real_t t484 = t483 + t482;
     const ariane6_real_t t485 = t472 * t261 + parameters[XX6] * t473 + parameters[XY6] * t478
         + parameters[XZ6] * t484;
@@ -776,16 +826,16 @@ int ariane6_forward_dynamics_derivatives_standard(
     const ariane6_real_t t492 = t488 + ARIANE6_C(0.685) * t491;
     const ariane6_real_t t493 = t454 + t455;
     const ariane6_real_t t494 = t492 + (ARIANE6_C(0.17) * t493 + ARIANE6_C(0.488) * t442);
-    const ariane6_real_t t495 = t436 * t436;
-    const ariane6_real_t t496 = t495 + t206;
+    const ariane6_real_t t495 = t436 * t436; /* link j3: motion */
+    const ariane6_real_t t496 = t495 + t206; /* link j4: motion */
     const ariane6_real_t t497 = t200 + t425;
     const ariane6_real_t t498 = t198 + ARIANE6_C(0.685) * t497;
     const ariane6_real_t t499 = t197 - t66 * t498;
     const ariane6_real_t t500 = t499 + (ARIANE6_C(-0.17) * t496 + ARIANE6_C(0.488) * t438);
     const ariane6_real_t t501 = t43 * t500 - t46 * t494;
     const ariane6_real_t t502 = t437 - t432;
-    const ariane6_real_t t503 = t434 * t434;
-    const ariane6_real_t t504 = t503 + t206;
+    const ariane6_real_t t503 = t434 * t434; /* link j3: motion */
+    const ariane6_real_t t504 = t503 + t206; /* link j4: motion */
     const ariane6_real_t t505 = t217 + t67 * t498;
     const ariane6_real_t t506 = t505 + (ARIANE6_C(-0.488) * t504 + ARIANE6_C(0.17) * t502);
     const ariane6_real_t t507 = t13 * t506 - t17 * t501;
@@ -795,9 +845,9 @@ int ariane6_forward_dynamics_derivatives_standard(
     const ariane6_real_t t511 = t1 * t508 + t2 * t510;
     const ariane6_real_t t512 = parameters[MZ6] * t511;
     const ariane6_real_t t513 = t13 * t501 + t17 * t506;
-    const ariane6_real_t t514 = t449 * t449;
+    const ariane6_real_t t514 = t449 * t449; /* link j5: motion */
     const ariane6_real_t t515 = t465 * t465;
-    const ariane6_real_t t516 = t514 + t515;
+    const ariane6_real_t t516 = t514 + t515; /* link j6: motion */
     const ariane6_real_t t517 = ARIANE6_C(0.3) * t516 - t513;
     const ariane6_real_t t518 = (t487 - t486) * parameters[YZ6] + t485 + (parameters[MY6] * t517 + t512);
     const ariane6_real_t t519 = t472 + t473;
@@ -819,7 +869,7 @@ int ariane6_forward_dynamics_derivatives_standard(
     const ariane6_real_t t534 = t451 - t448;
     const ariane6_real_t t535 = parameters[XX5] * t467 - t466 * t288 + parameters[XY5] * t533
         + parameters[XZ5] * t534;
-    const ariane6_real_t t536 = t450 * t450;
+    const ariane6_real_t t536 = t450 * t450; /* link j5: motion */
     const ariane6_real_t t537 = (t515 - t536) * parameters[YZ5] + t535 + (parameters[MY5] * t509
         + parameters[MZ5] * t513);
     const ariane6_real_t t538 = t537 + (t2 * t518 - t1 * t525 + ARIANE6_C(0.3) * t532);
@@ -836,7 +886,7 @@ int ariane6_forward_dynamics_derivatives_standard(
     const ariane6_real_t t545 = t458 + t456;
     const ariane6_real_t t546 = t461 * t301 - parameters[XX4] * t462 - parameters[XY4] * t544
         - parameters[XZ4] * t545;
-    const ariane6_real_t t547 = t457 * t457;
+    const ariane6_real_t t547 = t457 * t457; /* link j4: motion */
     const ariane6_real_t t548 = t445 * t445;
     const ariane6_real_t t549 = (t547 - t548) * parameters[YZ4] + t546 + (parameters[MY4] * t506
         - parameters[MZ4] * t509);
@@ -856,7 +906,7 @@ int ariane6_forward_dynamics_derivatives_standard(
     const ariane6_real_t t559 = (t536 + t515) * parameters[MX5] + parameters[MY5] * t452
         + parameters[MZ5] * t479;
     const ariane6_real_t t560 = t559 - parameters[M5] * t507 + t551;
-    const ariane6_real_t t561 = t522 + t486;
+    const ariane6_real_t t561 = t522 + t486; /* link j6: columns */
     const ariane6_real_t t562 = parameters[M6] * t517 + (t561 * parameters[MZ6] + (parameters[MY6] * t519
         - parameters[MX6] * t478));
     const ariane6_real_t t563 = t516 * parameters[MY5] + parameters[MX5] * t534 - parameters[MZ5] * t464
@@ -865,7 +915,7 @@ int ariane6_forward_dynamics_derivatives_standard(
     const ariane6_real_t t565 = parameters[MY4] * t459 - (t547 + t548) * parameters[MX4]
         - parameters[MZ4] * t443;
     const ariane6_real_t t566 = t565 - parameters[M4] * t501 + (t13 * t564 - t17 * t560);
-    const ariane6_real_t t567 = t514 + t536;
+    const ariane6_real_t t567 = t514 + t536; /* link j6: motion */
     const ariane6_real_t t568 = parameters[M5] * t509 + (t567 * parameters[MZ5] - (parameters[MX5] * t533
         - parameters[MY5] * t468));
     const ariane6_real_t t569 = (t556 + t548) * parameters[MY4] + parameters[MX4] * t545
@@ -892,7 +942,7 @@ int ariane6_forward_dynamics_derivatives_standard(
     const ariane6_real_t t583 = parameters[XX2] * t582 - t344 + parameters[XY2] * t491
         + parameters[XZ2] * t497;
     const ariane6_real_t t584 = t347 + t583 - (t348 + parameters[MY2] * t488) + (t66 * t580 - t67 * t574);
-    const ariane6_real_t t585 = t503 + t495;
+    const ariane6_real_t t585 = t503 + t495; /* link j4: motion */
     const ariane6_real_t t586 = parameters[M3] * t492 + (t585 * parameters[MZ3] + (parameters[MY3] * t442
         - parameters[MX3] * t493));
     const ariane6_real_t t587 = t586 + t571;
@@ -907,7 +957,7 @@ int ariane6_forward_dynamics_derivatives_standard(
     const ariane6_real_t t593 = ariane6_select(t153, t153, ARIANE6_C(1.0));
     const ariane6_real_t t594 = ARIANE6_C(1.0) / t593;
     const ariane6_real_t t595 = ARIANE6_C(0.0406334) * t156;
-    const ariane6_real_t t596 = ARIANE6_C(0.061525739908548135) * t153 / t156;
+    const ariane6_real_t t596 = ARIANE6_C(0.061525739908548135) * t153 / t156; /* joint j1: drive */
     const ariane6_real_t t597 = ARIANE6_C(1.0) / t156;
     const ariane6_real_t t598 = t597 * (ARIANE6_C(0.061525739908548135) * (t595 * (ARIANE6_C(0.5) * t594))
         + t152 * t596);
@@ -953,6 +1003,7 @@ int ariane6_forward_dynamics_derivatives_standard(
     const ariane6_real_t t631 = t471 * t630 - t475 * parameters[XZ6];
     const ariane6_real_t t632 = parameters[YY6] + t629;
     const ariane6_real_t t633 = t470 * parameters[YZ6] + t471 * t632;
+    /* link j6: inertia, momentum beyond */
     const ariane6_real_t t634 = t2 * (t626 + t628) + t1 * (t631 - t633);
     const ariane6_real_t t635 = t2 * t634;
     const ariane6_real_t t636 = ARIANE6_C(0.3) * t465;
@@ -982,76 +1033,93 @@ int ariane6_forward_dynamics_derivatives_standard(
     const ariane6_real_t t660 = t475 * t632 + t470 * parameters[XY6];
     const ariane6_real_t t661 = parameters[XX5] + t656;
     const ariane6_real_t t662 = t465 * t661 - t449 * parameters[XZ5] + (t2 * t659 - t1 * t660);
+    /* link j5: inertia, momentum beyond */
     const ariane6_real_t t663 = t17 * (t645 + t648) + t13 * (t662 - t658);
     const ariane6_real_t t664 = t17 * t663;
     const ariane6_real_t t665 = t457 * parameters[XZ4];
     const ariane6_real_t t666 = t445 * parameters[XY4];
     const ariane6_real_t t667 = t665 + t666 + (t664 - t648);
+    /* link j6: inertia, momentum beyond */
     const ariane6_real_t t668 = t643 + t647 + (t642 + (t635 - t626 + t641));
     const ariane6_real_t t669 = t444 * parameters[YZ4];
-    const ariane6_real_t t670 = t666 - t669 + t668;
-    const ariane6_real_t t671 = t1 * t634;
+    const ariane6_real_t t670 = t666 - t669 + t668; /* link j5: inertia, momentum beyond */
+    const ariane6_real_t t671 = t1 * t634; /* link j6: inertia, momentum beyond */
     const ariane6_real_t t672 = t449 * parameters[XY5] + t450 * t661 + (t671 - t631 + t24 * t640);
     const ariane6_real_t t673 = t1 * t652 - t2 * t653;
     const ariane6_real_t t674 = t1 * t650 - t2 * t651 - (ARIANE6_C(0.3) * t673 + t52 * t640);
     const ariane6_real_t t675 = t449 * t657 + t450 * parameters[XY5] + t674;
     const ariane6_real_t t676 = ARIANE6_C(-0.5) * (parameters[ZZ4] + (parameters[XX4] + parameters[YY4]));
     const ariane6_real_t t677 = parameters[XX4] + t676;
+    /* link j5: inertia, momentum beyond */
     const ariane6_real_t t678 = t445 * t677 - t444 * parameters[XZ4] - (t17 * t672 - t13 * t675);
     const ariane6_real_t t679 = parameters[ZZ5] + t656;
+    /* link j6: inertia, momentum beyond */
     const ariane6_real_t t680 = t633 + t671 - t3 * t636 - (t450 * t679 + t465 * parameters[YZ5]);
     const ariane6_real_t t681 = t449 * t679 - t465 * parameters[XZ5] + (t1 * t659 + t2 * t660);
     const ariane6_real_t t682 = parameters[YY4] + t676;
+    /* link j5: inertia, momentum beyond */
     const ariane6_real_t t683 = t457 * parameters[YZ4] + t445 * t682 + (t17 * t680 + t13 * t681);
+    /* link j4: inertia, momentum beyond */
     const ariane6_real_t t684 = t43 * (t667 + t670) - t46 * (t683 - t678);
     const ariane6_real_t t685 = t43 * t684;
+    /* link j6: inertia, momentum beyond */
     const ariane6_real_t t686 = t450 * parameters[MZ5] + t465 * parameters[MY5] + (t654
         + parameters[M6] * t636);
     const ariane6_real_t t687 = t465 * parameters[MX5] - t449 * parameters[MZ5] + t638;
+    /* link j5: inertia, momentum beyond */
     const ariane6_real_t t688 = t457 * parameters[MZ4] + t445 * parameters[MY4] + (t17 * t686 + t13 * t687);
+    /* link j6: inertia, momentum beyond */
     const ariane6_real_t t689 = t449 * parameters[MY5] + t450 * parameters[MX5] + (t673
         + parameters[M6] * t640);
+    /* link j5: inertia, momentum beyond */
     const ariane6_real_t t690 = t444 * parameters[MZ4] - t445 * parameters[MX4] + t689;
-    const ariane6_real_t t691 = t43 * t688 - t46 * t690;
+    const ariane6_real_t t691 = t43 * t688 - t46 * t690; /* link j4: inertia, momentum beyond */
     const ariane6_real_t t692 = ARIANE6_C(-0.17) * t691;
-    const ariane6_real_t t693 = ARIANE6_C(-0.488) * t205;
-    const ariane6_real_t t694 = t94 * t693;
+    const ariane6_real_t t693 = ARIANE6_C(-0.488) * t205; /* link j4: velocity of its origin */
+    const ariane6_real_t t694 = t94 * t693; /* link j4: inertia, momentum beyond */
+    /* link j5: inertia, momentum beyond */
     const ariane6_real_t t695 = t444 * parameters[MY4] + t457 * parameters[MX4] + (t17 * t687 - t13 * t686);
-    const ariane6_real_t t696 = ARIANE6_C(0.488) * t695;
+    const ariane6_real_t t696 = ARIANE6_C(0.488) * t695; /* link j4: inertia, momentum beyond */
     const ariane6_real_t t697 = ARIANE6_C(-0.488) * t434 + ARIANE6_C(0.17) * t436;
     const ariane6_real_t t698 = t87 * t697;
-    const ariane6_real_t t699 = ARIANE6_C(-0.17) * t205;
-    const ariane6_real_t t700 = t96 * t699;
+    const ariane6_real_t t699 = ARIANE6_C(-0.17) * t205; /* link j4: velocity of its origin */
+    const ariane6_real_t t700 = t96 * t699; /* link j4: inertia, momentum beyond */
     const ariane6_real_t t701 = t696 - t692 + (t700 - t694 + t698);
     const ariane6_real_t t702 = t436 * parameters[XZ3];
     const ariane6_real_t t703 = t205 * parameters[XY3];
     const ariane6_real_t t704 = t701 + (t670 - t685 + (t692 + t694)) - (t702 + t703);
-    const ariane6_real_t t705 = t665 + t669 - (t645 - t664);
+    const ariane6_real_t t705 = t665 + t669 - (t645 - t664); /* link j5: inertia, momentum beyond */
     const ariane6_real_t t706 = t434 * parameters[YZ3];
+    /* link j4: inertia, momentum beyond */
     const ariane6_real_t t707 = t703 - t706 + (t701 + (t705 - (t696 + t700)));
-    const ariane6_real_t t708 = t13 * t663;
+    const ariane6_real_t t708 = t13 * t663; /* link j5: inertia, momentum beyond */
     const ariane6_real_t t709 = parameters[ZZ4] + t676;
     const ariane6_real_t t710 = t457 * t709 + t445 * parameters[YZ4] + (t658 + t708);
     const ariane6_real_t t711 = t445 * parameters[XZ4] - t444 * t709 - (t13 * t672 + t17 * t675);
+    /* link j4: inertia, momentum beyond */
     const ariane6_real_t t712 = t43 * t710 + t46 * t711 + (ARIANE6_C(-0.488) * t691 + t96 * t693);
     const ariane6_real_t t713 = ARIANE6_C(0.5) * (parameters[ZZ3] + (parameters[XX3] + parameters[YY3]));
     const ariane6_real_t t714 = parameters[YY3] - t713;
     const ariane6_real_t t715 = t436 * parameters[YZ3] + t205 * t714 + t712;
+    /* link j5: inertia, momentum beyond */
     const ariane6_real_t t716 = t444 * parameters[XY4] + t457 * t677 + (t662 - t708);
     const ariane6_real_t t717 = t444 * t682 + t457 * parameters[XY4] + (t17 * t681 - t13 * t680);
+    /* link j4: inertia, momentum beyond */
     const ariane6_real_t t718 = t43 * t716 - t46 * t717 + (ARIANE6_C(0.17) * t695 + t94 * t699);
     const ariane6_real_t t719 = parameters[XX3] - t713;
     const ariane6_real_t t720 = t205 * t719 - t434 * parameters[XZ3] + t718;
+    /* link j3: inertia, momentum beyond */
     const ariane6_real_t t721 = t67 * (t704 - t707) + t66 * (t715 - t720);
     const ariane6_real_t t722 = t67 * t721;
+    /* link j4: inertia, momentum beyond */
     const ariane6_real_t t723 = t436 * parameters[MZ3] + t205 * parameters[MY3] + (t691 - t58 * t693);
     const ariane6_real_t t724 = t205 * parameters[MX3] - t434 * parameters[MZ3] + (t695 + t58 * t699);
-    const ariane6_real_t t725 = t67 * t723 + t66 * t724;
+    const ariane6_real_t t725 = t67 * t723 + t66 * t724; /* link j3: inertia, momentum beyond */
     const ariane6_real_t t726 = ARIANE6_C(0.685) * t725;
-    const ariane6_real_t t727 = ARIANE6_C(-0.685) * dq[1];
-    const ariane6_real_t t728 = t145 * t727;
-    const ariane6_real_t t729 = ARIANE6_C(0.685) * t193;
-    const ariane6_real_t t730 = t181 * t729;
+    const ariane6_real_t t727 = ARIANE6_C(-0.685) * dq[1]; /* link j3: velocity of its origin */
+    const ariane6_real_t t728 = t145 * t727; /* link j3: inertia, momentum beyond */
+    const ariane6_real_t t729 = ARIANE6_C(0.685) * t193; /* link j3: velocity of its origin */
+    const ariane6_real_t t730 = t181 * t729; /* link j3: inertia, momentum beyond */
     const ariane6_real_t t731 = t728 + t730 - t726;
     const ariane6_real_t t732 = t193 * parameters[XZ2];
     const ariane6_real_t t733 = dq[1] * parameters[XY2];
@@ -1066,59 +1134,67 @@ int ariane6_forward_dynamics_derivatives_standard(
     const ariane6_real_t t742 = parameters[XX2] - t738;
     const ariane6_real_t t743 = dq[1] * t742 - t199 * parameters[XZ2] + (t720 + t737
         + (ARIANE6_C(0.685) * t741 - t149 * t727));
+    /* link j2: inertia, momentum beyond */
     const ariane6_real_t t744 = t116 * (t116 * (t736 - t734) + t115 * (t740 + t743));
+    /* link j3: inertia, momentum beyond */
     const ariane6_real_t t745 = t193 * parameters[MZ2] - dq[1] * parameters[MY2] - t725;
     const ariane6_real_t t746 = t199 * parameters[MZ2] - dq[1] * parameters[MX2] + (t741 + t111 * t727);
-    const ariane6_real_t t747 = t181 - parameters[MZ2];
+    const ariane6_real_t t747 = t181 - parameters[MZ2]; /* link j3: inertia of it and all beyond */
+    /* link j2: inertia, momentum beyond */
     const ariane6_real_t t748 = ARIANE6_C(0.18) * (t116 * t745 + t115 * t746)
         - t747 * (ARIANE6_C(-0.18) * dq[0]);
     const ariane6_real_t t749 = ARIANE6_C(250.0) * (parameters[IA1] * (t367 * (ARIANE6_C(-2.0) * dq[0]))
         - t157 * parameters[FV1]);
     const ariane6_real_t t750 = t749 + t596 * (ARIANE6_C(2.0) * (t734 + t744 + t748));
     const ariane6_real_t t751 = t419 * t606;
-    const ariane6_real_t t752 = t46 * t684;
+    const ariane6_real_t t752 = t46 * t684; /* link j4: inertia, momentum beyond */
     const ariane6_real_t t753 = t46 * t688 + t43 * t690;
     const ariane6_real_t t754 = t434 * parameters[XY3] + t436 * t719 - (t678 - t752 - (ARIANE6_C(0.17) * t753
         - t94 * t697));
     const ariane6_real_t t755 = t46 * t710 - t43 * t711 + (ARIANE6_C(-0.488) * t753 + t96 * t697);
     const ariane6_real_t t756 = t434 * t714 + t436 * parameters[XY3] + t755;
     const ariane6_real_t t757 = t434 * parameters[MY3] + t436 * parameters[MX3] + (t753 - t58 * t697);
+    /* link j3: inertia, momentum beyond */
     const ariane6_real_t t758 = t66 * t756 - t67 * t754 + (ARIANE6_C(0.685) * t757 + t149 * t729);
+    /* link j2: derivatives */
     const ariane6_real_t t759 = ARIANE6_C(2.0) * (t193 * t742 - t199 * parameters[XY2] + t758);
+    /* link j3: inertia, momentum beyond */
     const ariane6_real_t t760 = t193 * parameters[XY2] + t199 * t739 - (t66 * t754 + t67 * t756
         - t145 * t729);
-    const ariane6_real_t t761 = ARIANE6_C(2.0) * t760;
-    const ariane6_real_t t762 = ARIANE6_C(-0.36) * dq[0];
+    const ariane6_real_t t761 = ARIANE6_C(2.0) * t760; /* link j2: derivatives */
+    const ariane6_real_t t762 = ARIANE6_C(-0.36) * dq[0]; /* link j6: derivatives */
+    /* link j2: derivatives */
     const ariane6_real_t t763 = t115 * t759 + t116 * t761 - (t116 * t148 + t115 * t150) * t762;
-    const ariane6_real_t t764 = ARIANE6_C(0.019697757607273984) * t119 / t117;
+    const ariane6_real_t t764 = ARIANE6_C(0.019697757607273984) * t119 / t117; /* joint j2: drive */
     const ariane6_real_t t765 = t764 * t763;
     const ariane6_real_t t766 = t403 * t608;
-    const ariane6_real_t t767 = ARIANE6_C(2.0) * t754;
+    const ariane6_real_t t767 = ARIANE6_C(2.0) * t754; /* link j3: derivatives */
     const ariane6_real_t t768 = ARIANE6_C(2.0) * t756;
-    const ariane6_real_t t769 = ARIANE6_C(1.37) * t193;
-    const ariane6_real_t t770 = t66 * t768 - t67 * t767 + t98 * t769;
+    const ariane6_real_t t769 = ARIANE6_C(1.37) * t193; /* link j6: derivatives */
+    const ariane6_real_t t770 = t66 * t768 - t67 * t767 + t98 * t769; /* link j3: derivatives */
     const ariane6_real_t t771 = t66 * t767 + t67 * t768 - t145 * t769;
     const ariane6_real_t t772 = t115 * t770 - t116 * t771 - (t116 * t145 + t115 * t98) * t762;
-    const ariane6_real_t t773 = ARIANE6_C(-0.029841482047364396) * t70 / t68;
+    const ariane6_real_t t773 = ARIANE6_C(-0.029841482047364396) * t70 / t68; /* joint j3: drive */
     const ariane6_real_t t774 = t773 * t772;
     const ariane6_real_t t775 = ariane6_bounded(ARIANE6_C(-5.0) * t611);
-    const ariane6_real_t t776 = ARIANE6_C(2.0) * t716;
+    const ariane6_real_t t776 = ARIANE6_C(2.0) * t716; /* link j4: derivatives */
     const ariane6_real_t t777 = ARIANE6_C(2.0) * t717;
-    const ariane6_real_t t778 = ARIANE6_C(0.34) * t205;
-    const ariane6_real_t t779 = t43 * t776 - t46 * t777 - t56 * t778;
+    const ariane6_real_t t778 = ARIANE6_C(0.34) * t205; /* link j6: derivatives */
+    const ariane6_real_t t779 = t43 * t776 - t46 * t777 - t56 * t778; /* link j4: derivatives */
     const ariane6_real_t t780 = ARIANE6_C(2.0) * t705;
-    const ariane6_real_t t781 = ARIANE6_C(2.0) * t697;
+    const ariane6_real_t t781 = ARIANE6_C(2.0) * t697; /* link j6: derivatives */
     const ariane6_real_t t782 = ARIANE6_C(0.976) * t205;
-    const ariane6_real_t t783 = t780 + (t87 * t781 + t56 * t782);
-    const ariane6_real_t t784 = ARIANE6_C(-1.37) * dq[1];
+    const ariane6_real_t t783 = t780 + (t87 * t781 + t56 * t782); /* link j4: derivatives */
+    const ariane6_real_t t784 = ARIANE6_C(-1.37) * dq[1]; /* link j6: derivatives */
+    /* link j4: derivatives */
     const ariane6_real_t t785 = t67 * t779 - t66 * t783 - (t56 * t784 + t105 * t769);
-    const ariane6_real_t t786 = t67 * t87;
-    const ariane6_real_t t787 = t66 * t779 + t67 * t783 + t786 * t769;
+    const ariane6_real_t t786 = t67 * t87; /* link j4: column of the mass matrix */
+    const ariane6_real_t t787 = t66 * t779 + t67 * t783 + t786 * t769; /* link j4: derivatives */
     const ariane6_real_t t788 = t115 * t785 + t116 * t787 - (t116 * t786 - t115 * t105) * t762;
     const ariane6_real_t t789 = ARIANE6_C(0.2) * t788;
     const ariane6_real_t t790 = t750 * t605 - t765 * t751 + t774 * t766 - t789 * t775;
     const ariane6_real_t t791 = t382 * t616;
-    const ariane6_real_t t792 = ARIANE6_C(2.0) * t672;
+    const ariane6_real_t t792 = ARIANE6_C(2.0) * t672; /* link j5: derivatives */
     const ariane6_real_t t793 = ARIANE6_C(2.0) * t675;
     const ariane6_real_t t794 = t17 * t792 - t13 * t793;
     const ariane6_real_t t795 = ARIANE6_C(-2.0) * t668;
@@ -1126,13 +1202,13 @@ int ariane6_forward_dynamics_derivatives_standard(
     const ariane6_real_t t797 = t13 * t792 + t17 * t793;
     const ariane6_real_t t798 = t797 + (t81 * t781 + t159 * t782);
     const ariane6_real_t t799 = t66 * t798 - t67 * t796 + (t159 * t784 + t102 * t769);
-    const ariane6_real_t t800 = t66 * t54 - t67 * t81;
-    const ariane6_real_t t801 = t66 * t796 + t67 * t798 - t800 * t769;
+    const ariane6_real_t t800 = t66 * t54 - t67 * t81; /* link j5: column of the mass matrix */
+    const ariane6_real_t t801 = t66 * t796 + t67 * t798 - t800 * t769; /* link j5: derivatives */
     const ariane6_real_t t802 = t115 * t799 - t116 * t801 - (t116 * t800 + t115 * t102) * t762;
-    const ariane6_real_t t803 = ARIANE6_C(0.07043047103899029) * t14 / t17;
+    const ariane6_real_t t803 = ARIANE6_C(0.07043047103899029) * t14 / t17; /* joint j5: drive */
     const ariane6_real_t t804 = t803 * t802;
     const ariane6_real_t t805 = ARIANE6_C(-5.0) * t622;
-    const ariane6_real_t t806 = ARIANE6_C(2.0) * t659;
+    const ariane6_real_t t806 = ARIANE6_C(2.0) * t659; /* link j6: derivatives */
     const ariane6_real_t t807 = ARIANE6_C(2.0) * t660;
     const ariane6_real_t t808 = t2 * t806 - t1 * t807;
     const ariane6_real_t t809 = ARIANE6_C(-2.0) * t646;
@@ -1143,8 +1219,8 @@ int ariane6_forward_dynamics_derivatives_standard(
     const ariane6_real_t t814 = t13 * t808 - t17 * t810;
     const ariane6_real_t t815 = t814 + (t77 * t781 + t130 * t782);
     const ariane6_real_t t816 = t66 * t815 - t67 * t813 + (t130 * t784 + t100 * t769);
-    const ariane6_real_t t817 = t66 * t78 - t67 * t77;
-    const ariane6_real_t t818 = t66 * t813 + t67 * t815 - t817 * t769;
+    const ariane6_real_t t817 = t66 * t78 - t67 * t77; /* link j6: column of the mass matrix */
+    const ariane6_real_t t818 = t66 * t813 + t67 * t815 - t817 * t769; /* link j6: derivatives */
     const ariane6_real_t t819 = t115 * t816 - t116 * t818 - (t116 * t817 + t115 * t100) * t762;
     const ariane6_real_t t820 = ARIANE6_C(0.2) * t819;
     ddq_by_dq[0] = t790 - t804 * t791 + t820 * t805;
@@ -1202,7 +1278,7 @@ int ariane6_forward_dynamics_derivatives_standard(
     ddq_by_input[18] = t612;
     ddq_by_input[24] = t617;
     ddq_by_input[30] = t623;
-    const ariane6_real_t t864 = ARIANE6_C(2.0) * t193;
+    const ariane6_real_t t864 = ARIANE6_C(2.0) * t193; /* link j2: derivatives */
     const ariane6_real_t t865 = ARIANE6_C(-2.0) * t199;
     const ariane6_real_t t866 = t734 * t864 + t740 * t865 + (t359 * t182 + (t143 * t489 - t146 * t581));
     const ariane6_real_t t867 = t743 * t864 + t736 * t865 + (t146 * t489 - t144 * t581 - t359 * t183);
@@ -1210,7 +1286,7 @@ int ariane6_forward_dynamics_derivatives_standard(
     const ariane6_real_t t869 = t746 * t864 + t745 * t865 + (t148 * t489 + t150 * t581);
     const ariane6_real_t t870 = t596 * (t868 + ARIANE6_C(0.18) * t869);
     const ariane6_real_t t871 = t46 * t570 - t43 * t566;
-    const ariane6_real_t t872 = t556 + t547;
+    const ariane6_real_t t872 = t556 + t547; /* link j5: motion */
     const ariane6_real_t t873 = parameters[M4] * t506 + (parameters[MX4] * t544 - parameters[MY4] * t463
         - t872 * parameters[MZ4]);
     const ariane6_real_t t874 = t873 - (t13 * t560 + t17 * t564);
@@ -1265,32 +1341,41 @@ int ariane6_forward_dynamics_derivatives_standard(
     const ariane6_real_t t911 = t858 * t897 - t623 * t870 - t859 * t899 + t848 * t901;
     ddq_by_q[31] = t911 + t861 * t904 + t863 * t906;
     const ariane6_real_t t912 = t713 - parameters[ZZ3];
+    /* link j4: inertia, momentum beyond */
     const ariane6_real_t t913 = t436 * t912 - t205 * parameters[YZ3] + (t683 + t752 + t87 * t693);
     const ariane6_real_t t914 = t205 * parameters[XZ3] + t434 * t912 - (t46 * t716 + t43 * t717 - t87 * t699);
     const ariane6_real_t t915 = parameters[ZZ2] - t738;
+    /* link j3: inertia, momentum beyond */
     const ariane6_real_t t916 = t193 * t915 - dq[1] * parameters[YZ2] + (t67 * t913 - t66 * t914);
+    /* link j2: derivatives */
     const ariane6_real_t t917 = t115 * (ARIANE6_C(2.0) * t916 + (t143 * t864 + t146 * t865));
+    /* link j3: inertia, momentum beyond */
     const ariane6_real_t t918 = dq[1] * parameters[XZ2] - t199 * t915 + (t66 * t913 + t67 * t914
         - t181 * t727);
+    /* link j2: derivatives */
     const ariane6_real_t t919 = t116 * (ARIANE6_C(2.0) * t918 + (t146 * t864 + t144 * t865));
     const ariane6_real_t t920 = t917 + t919 + ARIANE6_C(0.18) * (t148 * t864 - t150 * t865);
     const ariane6_real_t t921 = t596 * t920;
+    /* link j4: inertia, momentum beyond */
     const ariane6_real_t t922 = t667 - t685 + t698 - t701 - (t702 + t706);
+    /* link j2: derivatives */
     const ariane6_real_t t923 = ARIANE6_C(2.0) * (t732 - t735 + (t922 + t730 - t731))
         + ARIANE6_C(2.0) * (t193 * t182 + t199 * t183);
     const ariane6_real_t t924 = ARIANE6_C(250.0) * (parameters[IA2] * (t417 * (ARIANE6_C(-2.0) * dq[1]))
         - t122 * parameters[FV2]);
     const ariane6_real_t t925 = t924 + t764 * t923;
-    const ariane6_real_t t926 = ARIANE6_C(2.0) * t922;
+    const ariane6_real_t t926 = ARIANE6_C(2.0) * t922; /* link j3: derivatives */
     const ariane6_real_t t927 = t926 - t145 * t784 + ARIANE6_C(2.0) * (t193 * t176 + t199 * t177);
     const ariane6_real_t t928 = t773 * t927;
-    const ariane6_real_t t929 = t46 * t776 + t43 * t777 + t87 * t778;
+    const ariane6_real_t t929 = t46 * t776 + t43 * t777 + t87 * t778; /* link j4: derivatives */
     const ariane6_real_t t930 = t929 + t786 * t784 - ARIANE6_C(2.0) * (t199 * t169 - t193 * t168);
     const ariane6_real_t t931 = ARIANE6_C(0.2) * t930;
     const ariane6_real_t t932 = t921 * t605 - t925 * t751 + t928 * t766 + t931 * t775;
+    /* link j5: derivatives */
     const ariane6_real_t t933 = t46 * t794 + t43 * t795 + (t81 * t778 - t54 * t782);
     const ariane6_real_t t934 = t933 - t800 * t784 + ARIANE6_C(2.0) * (t193 * t162 + t199 * t163);
     const ariane6_real_t t935 = t803 * t934;
+    /* link j6: derivatives */
     const ariane6_real_t t936 = t46 * t811 + t43 * t812 + (t77 * t778 - t78 * t782);
     const ariane6_real_t t937 = t936 - t817 * t784 + ARIANE6_C(2.0) * (t193 * t133 + t199 * t134);
     const ariane6_real_t t938 = ARIANE6_C(0.2) * t937;
@@ -1311,7 +1396,7 @@ int ariane6_forward_dynamics_derivatives_standard(
     ddq_by_input[19] = t840;
     ddq_by_input[25] = t849;
     ddq_by_input[31] = t858;
-    const ariane6_real_t t944 = ARIANE6_C(2.0) * t436;
+    const ariane6_real_t t944 = ARIANE6_C(2.0) * t436; /* link j3: derivatives */
     const ariane6_real_t t945 = ARIANE6_C(2.0) * t434;
     const ariane6_real_t t946 = t715 * t945 - t704 * t944 + (t140 * t439 - t137 * t453 - t585 * t174);
     const ariane6_real_t t947 = t580 + (t946 + t181 * t499);
@@ -1395,7 +1480,7 @@ int ariane6_forward_dynamics_derivatives_standard(
     ddq_by_input[20] = t841;
     ddq_by_input[26] = t850;
     ddq_by_input[32] = t859;
-    const ariane6_real_t t1006 = ARIANE6_C(2.0) * t457;
+    const ariane6_real_t t1006 = ARIANE6_C(2.0) * t457; /* link j4: derivatives */
     const ariane6_real_t t1007 = ARIANE6_C(-2.0) * t444;
     const ariane6_real_t t1008 = t667 * t1006 - t683 * t1007 + (t872 * t85 + (t41 * t443 + t45 * t460));
     const ariane6_real_t t1009 = t558 + (t1008 - t62 * t501);
@@ -1474,7 +1559,7 @@ int ariane6_forward_dynamics_derivatives_standard(
     ddq_by_input[21] = t843;
     ddq_by_input[27] = t851;
     ddq_by_input[33] = t848;
-    const ariane6_real_t t1065 = ARIANE6_C(2.0) * t449;
+    const ariane6_real_t t1065 = ARIANE6_C(2.0) * t449; /* link j5: derivatives */
     const ariane6_real_t t1066 = ARIANE6_C(2.0) * t450;
     const ariane6_real_t t1067 = t662 * t1066 + t648 * t1065 + (t567 * t33 - (t26 * t479 + t23 * t464));
     const ariane6_real_t t1068 = t538 + (t1067 + t49 * t513);
@@ -1579,7 +1664,7 @@ int ariane6_forward_dynamics_derivatives_standard(
     ddq_by_input[22] = t846;
     ddq_by_input[28] = t854;
     ddq_by_input[34] = t861;
-    const ariane6_real_t t1145 = ARIANE6_C(2.0) * t470;
+    const ariane6_real_t t1145 = ARIANE6_C(2.0) * t470; /* link j6: derivatives */
     const ariane6_real_t t1146 = ARIANE6_C(2.0) * t475;
     const ariane6_real_t t1147 = t626 * t1145 + t633 * t1146 + (parameters[XY6] * t469
         - parameters[XX6] * t474 - t561 * parameters[XZ6]);

@@ -6,7 +6,7 @@
  * Arm ariane6, description ac2a59ce556c2f1c.
  * SPDX-License-Identifier: 0BSD
  *
- * Operations: 1144 (622 mul, 522 add, 0 neg), 10 div, 4 sqrt, 12 trig, 6 other.
+ * Operations: 1144 (622 mul, 522 add, 0 neg), 10 div, 4 sqrt, 12 trig, 6 other calls (sign, select and the like).
  *
  * @param[in]   q           [6]   [rad]      joint coordinates; norm at most 10000
  * @param[in]   dq          [6]   [rad/s]    joint velocities; norm at most 100000
@@ -107,11 +107,11 @@
  */
 #include "ariane6_private.h"
 
-#if ARIANE6_GENERATION != 0xBA206C14UL
+#if ARIANE6_GENERATION != 0x13CD28B3UL
 #error "ariane6.h and ariane6_forward_dynamics_standard.c are of different generations: generate the arm again"
 #endif
 
-int ariane6_forward_dynamics_standard(
+ariane6_status_t ariane6_forward_dynamics_standard(
     const ariane6_real_t q[ARIANE6_N_JOINTS],
     const ariane6_real_t dq[ARIANE6_N_JOINTS],
     const ariane6_real_t input[ARIANE6_N_JOINTS],
@@ -122,7 +122,7 @@ int ariane6_forward_dynamics_standard(
         M2, XX3, XY3, XZ3, YY3, YZ3, ZZ3, MX3, MY3, MZ3, M3, XX4, XY4, XZ4, YY4, YZ4, ZZ4, MX4, MY4, MZ4, M4,
         XX5, XY5, XZ5, YY5, YZ5, ZZ5, MX5, MY5, MZ5, M5, XX6, XY6, XZ6, YY6, YZ6, ZZ6, MX6, MY6, MZ6, M6, FV1,
         FC1, IA1, FV2, FC2, IA2, FV3, FC3, IA3, FV4, FC4, IA4, FV5, FC5, IA5, FV6, FC6, IA6 };
-    int status = ARIANE6_STATUS_OK;
+    ariane6_status_t status = ARIANE6_STATUS_OK;
 
     if (!ariane6_within_joints(q, ARIANE6_C(1.0e8))
         || !ariane6_within_joints(dq, ARIANE6_C(1.0e10))
@@ -158,16 +158,18 @@ int ariane6_forward_dynamics_standard(
         ariane6_zero(out, 6);
         return ARIANE6_STATUS_PIVOT;
     }
+    /* link j6: column of the mass matrix */
     const ariane6_real_t t3 = t2 * parameters[MY6] + t1 * parameters[MX6];
     const ariane6_real_t t4 = ARIANE6_C(0.3) * t3 - (t1 * parameters[XZ6] + t2 * parameters[YZ6]);
     const ariane6_real_t t5 = ARIANE6_C(-1.0) / t0;
     const ariane6_real_t t6 = t4 * t5;
-    const ariane6_real_t t7 = parameters[XX6] - parameters[YY6];
+    const ariane6_real_t t7 = parameters[XX6] - parameters[YY6]; /* link j6: inertia of it and all beyond */
     const ariane6_real_t t8 = parameters[XY6] * (ARIANE6_C(2.0) * t1) - t2 * t7;
     const ariane6_real_t t9 = t2 * t8;
     const ariane6_real_t t10 = ARIANE6_C(0.3) * parameters[M6];
     const ariane6_real_t t11 = ARIANE6_C(0.3) * (t10 + ARIANE6_C(2.0) * parameters[MZ6]);
     const ariane6_real_t t12 = parameters[ZZ5] + (parameters[XX6] + t9 + t11);
+    /* joint j5: drive */
     const ariane6_real_t t14 = ARIANE6_SQRT(ARIANE6_C(0.035496) * t13 + ARIANE6_C(0.097));
     const ariane6_real_t t15 = ARIANE6_C(1.0) / t14;
     const ariane6_real_t t17 = t16 * (ARIANE6_C(3549.6000000000004) * t15);
@@ -182,20 +184,23 @@ int ariane6_forward_dynamics_standard(
         ariane6_zero(out, 6);
         return ARIANE6_STATUS_PIVOT;
     }
+    /* link j6: inertia of it and all beyond */
     const ariane6_real_t t21 = parameters[XX5] + (parameters[YY6] - t9 + t11);
     const ariane6_real_t t22 = parameters[YY5] + parameters[ZZ6];
+    /* link j6: column of the mass matrix */
     const ariane6_real_t t23 = t1 * parameters[MY6] - t2 * parameters[MX6];
     const ariane6_real_t t24 = t1 * parameters[YZ6] - t2 * parameters[XZ6] + ARIANE6_C(-0.3) * t23;
-    const ariane6_real_t t25 = t24 - parameters[XY5];
+    const ariane6_real_t t25 = t24 - parameters[XY5]; /* link j6: inertia of it and all beyond */
+    /* link j5: inertia of it and all beyond */
     const ariane6_real_t t26 = t16 * (t22 - t21) - t25 * (ARIANE6_C(2.0) * t13);
     const ariane6_real_t t27 = t16 * t26;
     const ariane6_real_t t28 = parameters[ZZ4] + (t21 + t27);
     const ariane6_real_t t29 = t28 + ARIANE6_C(1.0e4) * parameters[IA4];
-    const ariane6_real_t t30 = t16 * parameters[ZZ6] - t13 * t24;
+    const ariane6_real_t t30 = t16 * parameters[ZZ6] - t13 * t24; /* link j6: column of the mass matrix */
     const ariane6_real_t t31 = t30 * t5;
-    const ariane6_real_t t32 = parameters[YZ5] + t4;
+    const ariane6_real_t t32 = parameters[YZ5] + t4; /* link j6: inertia of it and all beyond */
     const ariane6_real_t t33 = parameters[XZ5] - (parameters[XY6] - t1 * t8);
-    const ariane6_real_t t34 = t13 * t33 + t16 * t32;
+    const ariane6_real_t t34 = t13 * t33 + t16 * t32; /* link j5: column of the mass matrix */
     const ariane6_real_t t35 = t34 + t30 * t6;
     const ariane6_real_t t36 = ARIANE6_C(1.0) / t19;
     const ariane6_real_t t37 = t35 * t36;
@@ -209,45 +214,49 @@ int ariane6_forward_dynamics_standard(
         ariane6_zero(out, 6);
         return ARIANE6_STATUS_PIVOT;
     }
-    const ariane6_real_t t40 = parameters[XX4] + (t22 - t27);
+    const ariane6_real_t t40 = parameters[XX4] + (t22 - t27); /* link j5: inertia of it and all beyond */
     const ariane6_real_t t41 = parameters[YY4] + t12;
-    const ariane6_real_t t43 = t13 * t32 - t16 * t33;
-    const ariane6_real_t t44 = parameters[XY4] + t43;
+    const ariane6_real_t t43 = t13 * t32 - t16 * t33; /* link j5: column of the mass matrix */
+    const ariane6_real_t t44 = parameters[XY4] + t43; /* link j5: inertia of it and all beyond */
+    /* link j4: inertia of it and all beyond */
     const ariane6_real_t t46 = t42 * (t40 - t41) + t44 * (ARIANE6_C(-2.0) * t45);
     const ariane6_real_t t47 = t42 * t46;
+    /* link j5: inertia of it and all beyond */
     const ariane6_real_t t48 = parameters[MY4] - (parameters[MZ5] - t3);
-    const ariane6_real_t t49 = parameters[MX5] - t23;
+    const ariane6_real_t t49 = parameters[MX5] - t23; /* link j6: inertia of it and all beyond */
     const ariane6_real_t t50 = parameters[MY5] + (parameters[MZ6] + t10);
-    const ariane6_real_t t51 = t13 * t50 - t16 * t49;
-    const ariane6_real_t t52 = t51 - parameters[MX4];
-    const ariane6_real_t t53 = t45 * t48 + t42 * t52;
+    const ariane6_real_t t51 = t13 * t50 - t16 * t49; /* link j5: column of the mass matrix */
+    const ariane6_real_t t52 = t51 - parameters[MX4]; /* link j5: inertia of it and all beyond */
+    const ariane6_real_t t53 = t45 * t48 + t42 * t52; /* link j4: column of the mass matrix */
+    /* link j5: inertia of it and all beyond */
     const ariane6_real_t t54 = parameters[M4] + (parameters[M5] + parameters[M6]);
-    const ariane6_real_t t55 = ARIANE6_C(0.17) * t54;
+    const ariane6_real_t t55 = ARIANE6_C(0.17) * t54; /* link j4: inertia of it and all beyond */
     const ariane6_real_t t56 = ARIANE6_C(0.17) * (t55 + ARIANE6_C(2.0) * t53);
-    const ariane6_real_t t57 = t16 * t50 + t13 * t49;
-    const ariane6_real_t t58 = parameters[MZ4] + t57;
-    const ariane6_real_t t59 = ARIANE6_C(0.488) * t54;
+    const ariane6_real_t t57 = t16 * t50 + t13 * t49; /* link j5: column of the mass matrix */
+    const ariane6_real_t t58 = parameters[MZ4] + t57; /* link j5: inertia of it and all beyond */
+    const ariane6_real_t t59 = ARIANE6_C(0.488) * t54; /* link j4: inertia of it and all beyond */
     const ariane6_real_t t60 = ARIANE6_C(0.488) * (t59 + ARIANE6_C(2.0) * t58);
     const ariane6_real_t t61 = parameters[ZZ3] + (t40 - t47 + (t56 + t60));
+    /* joint j3: drive */
     const ariane6_real_t t64 = ARIANE6_C(0.052335956242943966) * t62 + ARIANE6_C(-0.9986295347545738) * t63;
     const ariane6_real_t t65 = ARIANE6_C(-0.052335956242943966) * t63 + ARIANE6_C(-0.9986295347545738) * t62;
     const ariane6_real_t t66 = ARIANE6_SQRT(ARIANE6_C(0.083776) * t65 + ARIANE6_C(0.38408000000000003));
     const ariane6_real_t t67 = ARIANE6_C(1.0) / t66;
     const ariane6_real_t t68 = t64 * (ARIANE6_C(8377.600000000002) * t67);
     const ariane6_real_t t69 = t61 + t68 * t68 * parameters[IA3];
-    const ariane6_real_t t70 = t16 * t24 + t13 * parameters[ZZ6];
+    const ariane6_real_t t70 = t16 * t24 + t13 * parameters[ZZ6]; /* link j6: column of the mass matrix */
     const ariane6_real_t t71 = t16 * t3;
     const ariane6_real_t t72 = t42 * t71 - t45 * t23;
     const ariane6_real_t t73 = t13 * t3;
     const ariane6_real_t t74 = t45 * t70 + t42 * t4 + (ARIANE6_C(0.17) * t73 + ARIANE6_C(0.488) * t72);
     const ariane6_real_t t75 = t74 * t5;
-    const ariane6_real_t t76 = t42 * t57;
+    const ariane6_real_t t76 = t42 * t57; /* link j5: column of the mass matrix */
     const ariane6_real_t t77 = t45 * t43 + t42 * t12 + (ARIANE6_C(0.17) * t51 + ARIANE6_C(0.488) * t76);
     const ariane6_real_t t78 = t77 + t74 * t6;
     const ariane6_real_t t79 = t78 * t36;
-    const ariane6_real_t t80 = t25 + t13 * t26 - parameters[XZ4];
+    const ariane6_real_t t80 = t25 + t13 * t26 - parameters[XZ4]; /* link j5: inertia of it and all beyond */
     const ariane6_real_t t81 = t34 - parameters[YZ4];
-    const ariane6_real_t t82 = t45 * t52 - t42 * t48;
+    const ariane6_real_t t82 = t45 * t52 - t42 * t48; /* link j4: column of the mass matrix */
     const ariane6_real_t t83 = t45 * t80 + t42 * t81 + ARIANE6_C(-0.488) * t82;
     const ariane6_real_t t84 = t83 + t74 * t31 - t78 * t37;
     const ariane6_real_t t85 = ARIANE6_C(-1.0) / t38;
@@ -262,10 +271,11 @@ int ariane6_forward_dynamics_standard(
         ariane6_zero(out, 6);
         return ARIANE6_STATUS_PIVOT;
     }
-    const ariane6_real_t t89 = t53 + t55;
+    const ariane6_real_t t89 = t53 + t55; /* link j4: inertia of it and all beyond */
     const ariane6_real_t t90 = parameters[MX3] - t89;
     const ariane6_real_t t91 = parameters[MY3] + (t58 + t59);
-    const ariane6_real_t t92 = t63 * t90 - t62 * t91;
+    const ariane6_real_t t92 = t63 * t90 - t62 * t91; /* link j3: column of the mass matrix */
+    /* link j6: column of the mass matrix */
     const ariane6_real_t t93 = ARIANE6_C(0.685) * (t62 * t72 + t63 * t73) - t74;
     const ariane6_real_t t94 = ARIANE6_C(0.685) * (t62 * t76 + t63 * t51) - t77 + t93 * t6;
     const ariane6_real_t t95 = ARIANE6_C(-0.685) * t92 - t61 + t93 * t75 - t94 * t79;
@@ -273,9 +283,10 @@ int ariane6_forward_dynamics_standard(
     const ariane6_real_t t97 = t95 - t96 * t86;
     const ariane6_real_t t98 = ARIANE6_C(1.0) / t87;
     const ariane6_real_t t99 = t97 * t98;
-    const ariane6_real_t t100 = parameters[M3] + t54;
-    const ariane6_real_t t101 = ARIANE6_C(0.685) * t100;
+    const ariane6_real_t t100 = parameters[M3] + t54; /* link j4: inertia of it and all beyond */
+    const ariane6_real_t t101 = ARIANE6_C(0.685) * t100; /* link j3: inertia of it and all beyond */
     const ariane6_real_t t102 = ARIANE6_C(0.685) * (t101 + ARIANE6_C(2.0) * t92);
+    /* joint j2: drive */
     const ariane6_real_t t105 = ARIANE6_C(0.766044443118978) * t103 + ARIANE6_C(0.6427876096865393) * t104;
     const ariane6_real_t t106 = ARIANE6_C(-0.766044443118978) * t104 + ARIANE6_C(0.6427876096865393) * t103;
     const ariane6_real_t t107 = ARIANE6_SQRT(ARIANE6_C(0.126918) * t106 + ARIANE6_C(0.420682));
@@ -296,51 +307,60 @@ int ariane6_forward_dynamics_standard(
         ariane6_zero(out, 6);
         return ARIANE6_STATUS_PIVOT;
     }
-    const ariane6_real_t t117 = t45 * t71 + t42 * t23;
+    const ariane6_real_t t117 = t45 * t71 + t42 * t23; /* link j6: column of the mass matrix */
     const ariane6_real_t t118 = t42 * t70 - t45 * t4 + ARIANE6_C(-0.488) * t117;
     const ariane6_real_t t119 = t30 + ARIANE6_C(0.17) * t117;
     const ariane6_real_t t120 = t104 * (t62 * t118 - t63 * t119 + ARIANE6_C(0.685) * t117);
     const ariane6_real_t t121 = t103 * (t63 * t118 + t62 * t119) + t120 + ARIANE6_C(0.18) * t117;
     const ariane6_real_t t122 = t121 * t5;
+    /* link j4: inertia of it and all beyond */
     const ariane6_real_t t123 = parameters[XX3] + (t41 + t47 + t60);
     const ariane6_real_t t124 = parameters[YY3] + (t28 + t56);
-    const ariane6_real_t t125 = t45 * t81 - t42 * t80;
+    const ariane6_real_t t125 = t45 * t81 - t42 * t80; /* link j4: column of the mass matrix */
+    /* link j4: inertia of it and all beyond */
     const ariane6_real_t t126 = parameters[XY3] + (t125 + (ARIANE6_C(0.17) * t58 + ARIANE6_C(0.488) * t89));
+    /* link j3: inertia of it and all beyond */
     const ariane6_real_t t127 = t63 * (t123 - t124) - t126 * (ARIANE6_C(2.0) * t62);
     const ariane6_real_t t128 = t63 * t127;
     const ariane6_real_t t129 = parameters[XX2] + (t124 + t128);
-    const ariane6_real_t t130 = t63 * t91 + t62 * t90;
+    const ariane6_real_t t130 = t63 * t91 + t62 * t90; /* link j3: column of the mass matrix */
+    /* link j2: inertia of it and all beyond */
     const ariane6_real_t t131 = (parameters[XY2] + (t126 + t62 * t127
         + ARIANE6_C(-0.685) * t130)) * (ARIANE6_C(2.0) * t103);
     const ariane6_real_t t132 = t104 * (parameters[YY2] + (t123 - t128 + t102) - t129) + t131;
+    /* link j2: column of the mass matrix */
     const ariane6_real_t t133 = t104 * (parameters[MX2] + (t92 + t101)) - t103 * (parameters[MY2] + t130);
+    /* link j2: inertia of it and all beyond */
     const ariane6_real_t t134 = t129 + t104 * t132 + ARIANE6_C(0.18) * (ARIANE6_C(0.18) * (parameters[M2]
         + t100) + ARIANE6_C(2.0) * t133);
+    /* joint j1: drive */
     const ariane6_real_t t136 = ARIANE6_SQRT(ARIANE6_C(0.0406334) * t135 + ARIANE6_C(0.10828541));
     const ariane6_real_t t137 = ARIANE6_C(1.0) / t136;
     const ariane6_real_t t139 = t138 * (ARIANE6_C(4063.3400000000006) * t137);
     const ariane6_real_t t140 = parameters[ZZ1] + t134 + t139 * t139 * parameters[IA1];
-    const ariane6_real_t t141 = t45 * t57;
+    const ariane6_real_t t141 = t45 * t57; /* link j5: column of the mass matrix */
     const ariane6_real_t t142 = t42 * t43 - t45 * t12 + ARIANE6_C(-0.488) * t141;
     const ariane6_real_t t143 = t34 + ARIANE6_C(0.17) * t141;
     const ariane6_real_t t144 = t104 * (t62 * t142 - t63 * t143 + ARIANE6_C(0.685) * t141);
     const ariane6_real_t t145 = t103 * (t63 * t142 + t62 * t143) + t144 + ARIANE6_C(0.18) * t141;
     const ariane6_real_t t146 = t145 + t121 * t6;
     const ariane6_real_t t147 = t146 * t36;
-    const ariane6_real_t t148 = ARIANE6_C(-0.488) * t53 - t125;
+    const ariane6_real_t t148 = ARIANE6_C(-0.488) * t53 - t125; /* link j4: column of the mass matrix */
     const ariane6_real_t t149 = t28 + ARIANE6_C(0.17) * t53;
     const ariane6_real_t t150 = t104 * (t62 * t148 - t63 * t149 + ARIANE6_C(0.685) * t53);
     const ariane6_real_t t151 = t103 * (t63 * t148 + t62 * t149) + t150 + ARIANE6_C(0.18) * t53;
     const ariane6_real_t t152 = t151 + t121 * t31 - t146 * t37;
     const ariane6_real_t t153 = t152 * t85;
     const ariane6_real_t t154 = t140 + t121 * t122 - t146 * t147 + t152 * t153;
+    /* link j4: inertia of it and all beyond */
     const ariane6_real_t t155 = t44 + t45 * t46 + ARIANE6_C(-0.17) * t82 - parameters[XZ3];
     const ariane6_real_t t156 = parameters[YZ3] + t83;
-    const ariane6_real_t t157 = t63 * t155 + t62 * t156;
+    const ariane6_real_t t157 = t63 * t155 + t62 * t156; /* link j3: column of the mass matrix */
     const ariane6_real_t t158 = t62 * t155 - t63 * t156;
     const ariane6_real_t t159 = t103 * t157 + t104 * t158 + t121 * t75 - t146 * t79;
     const ariane6_real_t t160 = t159 + t152 * t86;
     const ariane6_real_t t161 = t160 * t98;
+    /* link j2: column of the mass matrix */
     const ariane6_real_t t162 = t103 * (t157 + ARIANE6_C(0.685) * (parameters[MZ3] + t82) - parameters[XZ2])
         + t104 * (t158 - parameters[YZ2]);
     const ariane6_real_t t163 = t162 - t121 * t111 + t146 * t112 + t152 * t113;
@@ -357,66 +377,68 @@ int ariane6_forward_dynamics_standard(
         ariane6_zero(out, 6);
         return ARIANE6_STATUS_PIVOT;
     }
-    const ariane6_real_t t169 = dq[0] * dq[0];
-    const ariane6_real_t t170 = ARIANE6_C(0.18) * t169;
+    const ariane6_real_t t169 = dq[0] * dq[0]; /* link j1: motion */
+    const ariane6_real_t t170 = ARIANE6_C(0.18) * t169; /* link j2: motion */
     const ariane6_real_t t171 = t104 * t170 + ARIANE6_C(-9.81) * t103;
     const ariane6_real_t t172 = t104 * dq[0];
     const ariane6_real_t t173 = t172 * t172;
     const ariane6_real_t t174 = dq[1] * dq[1];
-    const ariane6_real_t t175 = t171 + ARIANE6_C(0.685) * (t173 + t174);
-    const ariane6_real_t t176 = ARIANE6_C(-9.81) * t104 - t103 * t170;
+    const ariane6_real_t t175 = t171 + ARIANE6_C(0.685) * (t173 + t174); /* link j3: motion */
+    const ariane6_real_t t176 = ARIANE6_C(-9.81) * t104 - t103 * t170; /* link j2: motion */
     const ariane6_real_t t177 = t103 * dq[0];
     const ariane6_real_t t178 = t177 * t172;
-    const ariane6_real_t t179 = t176 + ARIANE6_C(-0.685) * t178;
+    const ariane6_real_t t179 = t176 + ARIANE6_C(-0.685) * t178; /* link j3: motion */
     const ariane6_real_t t180 = t63 * t175 + t62 * t179;
     const ariane6_real_t t181 = t63 * t172 - t62 * t177;
     const ariane6_real_t t182 = t181 * t181;
     const ariane6_real_t t183 = dq[1] + dq[2];
     const ariane6_real_t t184 = t183 * t183;
-    const ariane6_real_t t185 = t184 + t182;
-    const ariane6_real_t t186 = t63 * t177 + t62 * t172;
+    const ariane6_real_t t185 = t184 + t182; /* link j4: motion */
+    const ariane6_real_t t186 = t63 * t177 + t62 * t172; /* link j3: motion */
     const ariane6_real_t t187 = t186 * t181;
+    /* link j4: motion */
     const ariane6_real_t t188 = t180 + (ARIANE6_C(-0.17) * t185 + ARIANE6_C(-0.488) * t187);
-    const ariane6_real_t t189 = t183 * t186;
+    const ariane6_real_t t189 = t183 * t186; /* link j3: motion */
     const ariane6_real_t t190 = t183 * t181;
-    const ariane6_real_t t191 = dq[1] * t177;
-    const ariane6_real_t t192 = ARIANE6_C(1.37) * t191;
+    const ariane6_real_t t191 = dq[1] * t177; /* link j2: motion */
+    const ariane6_real_t t192 = ARIANE6_C(1.37) * t191; /* link j3: motion */
+    /* link j4: motion */
     const ariane6_real_t t193 = t192 - (ARIANE6_C(0.34) * t189 + ARIANE6_C(-0.976) * t190);
     const ariane6_real_t t194 = t42 * t188 + t45 * t193;
-    const ariane6_real_t t195 = t63 * t179 - t62 * t175;
+    const ariane6_real_t t195 = t63 * t179 - t62 * t175; /* link j3: motion */
     const ariane6_real_t t196 = t186 * t186;
-    const ariane6_real_t t197 = t184 + t196;
+    const ariane6_real_t t197 = t184 + t196; /* link j4: motion */
     const ariane6_real_t t198 = t195 + (ARIANE6_C(0.17) * t187 + ARIANE6_C(0.488) * t197);
-    const ariane6_real_t t199 = t13 * t194 - t16 * t198;
-    const ariane6_real_t t200 = t42 * t186 - t45 * t183;
+    const ariane6_real_t t199 = t13 * t194 - t16 * t198; /* link j5: motion */
+    const ariane6_real_t t200 = t42 * t186 - t45 * t183; /* link j4: motion */
     const ariane6_real_t t201 = dq[3] + t181;
-    const ariane6_real_t t202 = t16 * t200 + t13 * t201;
+    const ariane6_real_t t202 = t16 * t200 + t13 * t201; /* link j5: motion */
     const ariane6_real_t t203 = t202 * t202;
-    const ariane6_real_t t204 = t42 * t183 + t45 * t186;
-    const ariane6_real_t t205 = dq[4] + t204;
+    const ariane6_real_t t204 = t42 * t183 + t45 * t186; /* link j4: motion */
+    const ariane6_real_t t205 = dq[4] + t204; /* link j5: motion */
     const ariane6_real_t t206 = t205 * t205;
-    const ariane6_real_t t207 = t203 + t206;
+    const ariane6_real_t t207 = t203 + t206; /* link j6: motion */
     const ariane6_real_t t208 = t199 - ARIANE6_C(0.3) * t207;
-    const ariane6_real_t t209 = t16 * t194 + t13 * t198;
-    const ariane6_real_t t210 = ARIANE6_C(2.0) * t190;
+    const ariane6_real_t t209 = t16 * t194 + t13 * t198; /* link j5: motion */
+    const ariane6_real_t t210 = ARIANE6_C(2.0) * t190; /* link j4: motion */
     const ariane6_real_t t211 = t45 * t210 - t42 * t187;
     const ariane6_real_t t212 = t200 * t201;
     const ariane6_real_t t213 = t211 + t212;
-    const ariane6_real_t t214 = t16 * t201 - t13 * t200;
+    const ariane6_real_t t214 = t16 * t201 - t13 * t200; /* link j5: motion */
     const ariane6_real_t t215 = t202 * t214;
-    const ariane6_real_t t216 = t213 - t215;
+    const ariane6_real_t t216 = t213 - t215; /* link j6: motion */
     const ariane6_real_t t217 = t209 + ARIANE6_C(0.3) * t216;
-    const ariane6_real_t t218 = t45 * t188 - t42 * t193;
+    const ariane6_real_t t218 = t45 * t188 - t42 * t193; /* link j4: motion */
     const ariane6_real_t t219 = t45 * t187 + t42 * t210;
     const ariane6_real_t t220 = t204 * t201;
     const ariane6_real_t t221 = t219 - t220;
-    const ariane6_real_t t222 = t221 - t220;
-    const ariane6_real_t t223 = t200 * t204;
-    const ariane6_real_t t224 = t223 - t189;
+    const ariane6_real_t t222 = t221 - t220; /* link j5: motion */
+    const ariane6_real_t t223 = t200 * t204; /* link j4: motion */
+    const ariane6_real_t t224 = t223 - t189; /* link j5: motion */
     const ariane6_real_t t225 = t13 * t224 + t16 * t222;
     const ariane6_real_t t226 = t214 * t205;
     const ariane6_real_t t227 = t225 + t226;
-    const ariane6_real_t t228 = t226 + t227;
+    const ariane6_real_t t228 = t226 + t227; /* link j6: motion */
     const ariane6_real_t t229 = t218 - ARIANE6_C(0.3) * t228;
     const ariane6_real_t t230 = t1 * t217 + t2 * t229;
     const ariane6_real_t t231 = t2 * t228 - t1 * t216;
@@ -428,24 +450,26 @@ int ariane6_forward_dynamics_standard(
     const ariane6_real_t t237 = t2 * t202 - t1 * t205;
     const ariane6_real_t t238 = t237 * t233;
     const ariane6_real_t t239 = t236 + t238;
-    const ariane6_real_t t240 = t238 + t239;
+    const ariane6_real_t t240 = t238 + t239; /* link j6: force and moment */
     const ariane6_real_t t241 = parameters[XY6] * t240 - (parameters[XX6] * t235 + t234 * (parameters[YY6]
         - parameters[ZZ6]));
-    const ariane6_real_t t242 = t13 * t222 - t16 * t224;
+    const ariane6_real_t t242 = t13 * t222 - t16 * t224; /* link j5: motion */
     const ariane6_real_t t243 = t202 * t205;
     const ariane6_real_t t244 = t242 + t243;
-    const ariane6_real_t t245 = t237 * t232;
-    const ariane6_real_t t246 = t244 + t245;
-    const ariane6_real_t t247 = t232 * t232;
+    const ariane6_real_t t245 = t237 * t232; /* link j6: motion */
+    const ariane6_real_t t246 = t244 + t245; /* link j6: force and moment */
+    const ariane6_real_t t247 = t232 * t232; /* link j6: motion */
     const ariane6_real_t t248 = t233 * t233;
+    /* link j6: force and moment */
     const ariane6_real_t t249 = t241 + parameters[XZ6] * t246 - parameters[YZ6] * (t247 - t248)
         - (parameters[MY6] * t208 - parameters[MZ6] * t230);
-    const ariane6_real_t t250 = t2 * t217 - t1 * t229;
-    const ariane6_real_t t251 = t235 - t234;
+    const ariane6_real_t t250 = t2 * t217 - t1 * t229; /* link j6: motion */
+    const ariane6_real_t t251 = t235 - t234; /* link j6: force and moment */
     const ariane6_real_t t252 = parameters[XY6] * t251 - (parameters[YY6] * t239 + t238 * (parameters[ZZ6]
         - parameters[XX6]));
     const ariane6_real_t t253 = t245 - t244;
-    const ariane6_real_t t254 = t237 * t237;
+    const ariane6_real_t t254 = t237 * t237; /* link j6: motion */
+    /* link j6: force and moment */
     const ariane6_real_t t255 = t252 + parameters[YZ6] * t253 + parameters[XZ6] * (t248 - t254)
         - (parameters[MZ6] * t250 + parameters[MX6] * t208);
     const ariane6_real_t t256 = parameters[MX6] * (t247 + t248) + parameters[MY6] * t253
@@ -454,146 +478,187 @@ int ariane6_forward_dynamics_standard(
     const ariane6_real_t t258 = parameters[MX6] * t246 + parameters[MY6] * (t254 + t248)
         + parameters[MZ6] * t231;
     const ariane6_real_t t259 = parameters[M6] * t230 - t258;
-    const ariane6_real_t t260 = t1 * t257 - t2 * t259;
-    const ariane6_real_t t261 = t243 + t244;
+    const ariane6_real_t t260 = t1 * t257 - t2 * t259; /* link j6: what it passes on */
+    const ariane6_real_t t261 = t243 + t244; /* link j6: motion */
+    /* link j5: force and moment */
     const ariane6_real_t t262 = t226 * (parameters[YY5] - parameters[ZZ5]) - parameters[XX5] * t227
         + parameters[XY5] * t261;
-    const ariane6_real_t t263 = t213 + t215;
-    const ariane6_real_t t264 = t214 * t214;
+    const ariane6_real_t t263 = t213 + t215; /* link j6: motion */
+    const ariane6_real_t t264 = t214 * t214; /* link j5: motion */
+    /* link j5: force and moment */
     const ariane6_real_t t265 = t262 - parameters[XZ5] * t263 + parameters[YZ5] * (t206 - t264)
         + (parameters[MY5] * t218 + parameters[MZ5] * t199);
+    /* link j6: what it passes on */
     const ariane6_real_t t266 = t265 + (t2 * t249 + t1 * t255 + ARIANE6_C(-0.3) * t260);
+    /* link j5: force and moment */
     const ariane6_real_t t267 = parameters[XY5] * t228 - (parameters[YY5] * t244 + t243 * (parameters[ZZ5]
         - parameters[XX5]));
     const ariane6_real_t t268 = t267 + parameters[YZ5] * t216 + parameters[XZ5] * (t206 - t203)
         + (parameters[MX5] * t218 - parameters[MZ5] * t209);
+    /* link j6: force and moment */
     const ariane6_real_t t269 = t7 * t245 - parameters[ZZ6] * t244 - parameters[YZ6] * t236
         + parameters[XZ6] * t231;
     const ariane6_real_t t270 = t269 + parameters[XY6] * (t254 - t247) + (parameters[MX6] * t230
         + parameters[MY6] * t250);
-    const ariane6_real_t t271 = t268 + t270;
-    const ariane6_real_t t272 = t212 + t213;
+    const ariane6_real_t t271 = t268 + t270; /* link j6: what it passes on */
+    const ariane6_real_t t272 = t212 + t213; /* link j5: motion */
+    /* link j4: force and moment */
     const ariane6_real_t t273 = t220 * (parameters[ZZ4] - parameters[YY4]) - parameters[XX4] * t221
         + parameters[XY4] * t272;
-    const ariane6_real_t t274 = t189 + t223;
-    const ariane6_real_t t275 = t204 * t204;
+    const ariane6_real_t t274 = t189 + t223; /* link j5: motion */
+    const ariane6_real_t t275 = t204 * t204; /* link j4: motion */
     const ariane6_real_t t276 = t201 * t201;
+    /* link j4: force and moment */
     const ariane6_real_t t277 = t273 + parameters[XZ4] * t274 + parameters[YZ4] * (t276 - t275)
         + (parameters[MY4] * t198 + parameters[MZ4] * t218);
-    const ariane6_real_t t278 = t277 + (t16 * t266 + t13 * t271);
-    const ariane6_real_t t279 = t2 * t257 + t1 * t259;
+    const ariane6_real_t t278 = t277 + (t16 * t266 + t13 * t271); /* link j5: what it passes on */
+    const ariane6_real_t t279 = t2 * t257 + t1 * t259; /* link j6: what it passes on */
+    /* link j5: force and moment */
     const ariane6_real_t t280 = parameters[YZ5] * t242 - (parameters[ZZ5] * t213 + t215 * (parameters[YY5]
         - parameters[XX5]));
     const ariane6_real_t t281 = t280 - parameters[XZ5] * t225 + parameters[XY5] * (t264 - t203)
         - (parameters[MX5] * t199 + parameters[MY5] * t209);
+    /* link j6: what it passes on */
     const ariane6_real_t t282 = t281 + (t2 * t255 - t1 * t249 + ARIANE6_C(-0.3) * t279);
+    /* link j4: force and moment */
     const ariane6_real_t t283 = parameters[XY4] * t222 - (parameters[YY4] * t213 + t212 * (parameters[ZZ4]
         - parameters[XX4]));
-    const ariane6_real_t t284 = t200 * t200;
+    const ariane6_real_t t284 = t200 * t200; /* link j4: motion */
+    /* link j4: force and moment */
     const ariane6_real_t t285 = t283 + parameters[YZ4] * t224 + parameters[XZ4] * (t276 - t284)
         + (parameters[MX4] * t198 - parameters[MZ4] * t194);
-    const ariane6_real_t t286 = t285 + t282;
+    const ariane6_real_t t286 = t285 + t282; /* link j5: what it passes on */
+    /* link j5: force and moment */
     const ariane6_real_t t287 = parameters[MX5] * (t264 + t206) + parameters[MY5] * t216
         + parameters[MZ5] * t242;
-    const ariane6_real_t t288 = parameters[M5] * t209 + t287 + t279;
+    const ariane6_real_t t288 = parameters[M5] * t209 + t287 + t279; /* link j6: what it passes on */
+    /* link j6: force and moment */
     const ariane6_real_t t289 = parameters[MX6] * t240 + parameters[MY6] * t251 - parameters[MZ6] * (t254
         + t247);
+    /* link j5: force and moment */
     const ariane6_real_t t290 = parameters[M5] * t199 + (parameters[MX5] * t263 - parameters[MY5] * t207
         - parameters[MZ5] * t225);
-    const ariane6_real_t t291 = t290 + (parameters[M6] * t208 + t289);
+    const ariane6_real_t t291 = t290 + (parameters[M6] * t208 + t289); /* link j6: what it passes on */
+    /* link j4: force and moment */
     const ariane6_real_t t292 = parameters[MX4] * (t275 + t276) + parameters[MY4] * t224
         + parameters[MZ4] * t211;
+    /* link j5: what it passes on */
     const ariane6_real_t t293 = parameters[M4] * t194 + t292 + (t16 * t288 + t13 * t291);
+    /* link j5: force and moment */
     const ariane6_real_t t294 = parameters[MX5] * t261 + parameters[MY5] * t228 - parameters[MZ5] * (t203
         + t264);
+    /* link j4: force and moment */
     const ariane6_real_t t295 = parameters[MX4] * t274 + parameters[MY4] * (t284 + t276)
         + parameters[MZ4] * t219;
+    /* link j5: what it passes on */
     const ariane6_real_t t296 = t295 - parameters[M4] * t218 + (t294 - parameters[M5] * t218 + t260);
-    const ariane6_real_t t297 = t45 * t293 + t42 * t296;
-    const ariane6_real_t t298 = ARIANE6_C(2.0) * t189;
+    const ariane6_real_t t297 = t45 * t293 + t42 * t296; /* link j4: what it passes on */
+    const ariane6_real_t t298 = ARIANE6_C(2.0) * t189; /* link j4: motion */
+    /* link j3: force and moment */
     const ariane6_real_t t299 = parameters[XY3] * t298 - (parameters[XX3] * t190 + t190 * (parameters[ZZ3]
         - parameters[YY3]));
     const ariane6_real_t t300 = t299 - parameters[XZ3] * t187 + parameters[YZ3] * (t184 - t182)
         - (parameters[MY3] * t192 + parameters[MZ3] * t195);
+    /* link j4: what it passes on */
     const ariane6_real_t t301 = t300 + (t42 * t278 + t45 * t286 + ARIANE6_C(-0.488) * t297);
+    /* link j4: force and moment */
     const ariane6_real_t t302 = parameters[ZZ4] * t189 - t223 * (parameters[XX4] - parameters[YY4])
         + parameters[YZ4] * t211;
     const ariane6_real_t t303 = t302 - parameters[XZ4] * t219 - parameters[XY4] * (t284 - t275)
         - (parameters[MX4] * t218 + parameters[MY4] * t194);
-    const ariane6_real_t t304 = t303 + (t13 * t266 - t16 * t271);
+    const ariane6_real_t t304 = t303 + (t13 * t266 - t16 * t271); /* link j5: what it passes on */
+    /* link j3: force and moment */
     const ariane6_real_t t305 = parameters[YY3] * t189 - t189 * (parameters[XX3] - parameters[ZZ3])
         - parameters[XY3] * t210;
     const ariane6_real_t t306 = t305 + parameters[YZ3] * t187 - parameters[XZ3] * (t184 - t196)
         + (parameters[MZ3] * t180 + parameters[MX3] * t192);
-    const ariane6_real_t t307 = t306 + (t304 - ARIANE6_C(0.17) * t297);
-    const ariane6_real_t t308 = dq[1] * t172;
+    const ariane6_real_t t307 = t306 + (t304 - ARIANE6_C(0.17) * t297); /* link j4: what it passes on */
+    const ariane6_real_t t308 = dq[1] * t172; /* link j2: motion */
     const ariane6_real_t t309 = ARIANE6_C(2.0) * t191;
+    /* link j2: force and moment */
     const ariane6_real_t t310 = t308 * (parameters[YY2] - parameters[ZZ2]) - t308 * parameters[XX2]
         + t309 * parameters[XY2];
     const ariane6_real_t t311 = t310 - t178 * parameters[XZ2] + (t174 - t173) * parameters[YZ2]
         - t176 * parameters[MZ2];
+    /* link j3: force and moment */
     const ariane6_real_t t312 = parameters[MX3] * t298 + parameters[MY3] * t210 - parameters[MZ3] * (t196
         + t182);
-    const ariane6_real_t t313 = parameters[M3] * t192 + t312 + t297;
-    const ariane6_real_t t314 = ARIANE6_C(2.0) * t308;
+    const ariane6_real_t t313 = parameters[M3] * t192 + t312 + t297; /* link j4: what it passes on */
+    const ariane6_real_t t314 = ARIANE6_C(2.0) * t308; /* link j2: motion */
+    /* link j2: force and moment */
     const ariane6_real_t t315 = t191 * parameters[YY2] + t191 * (parameters[ZZ2] - parameters[XX2])
         - t314 * parameters[XY2];
-    const ariane6_real_t t316 = t177 * t177;
+    const ariane6_real_t t316 = t177 * t177; /* link j2: motion */
+    /* link j2: force and moment */
     const ariane6_real_t t317 = t315 + t178 * parameters[YZ2] + (t316 - t174) * parameters[XZ2]
         + t171 * parameters[MZ2];
+    /* link j3: what it passes on */
     const ariane6_real_t t318 = t317 + (t62 * t301 + t63 * t307 + ARIANE6_C(0.685) * t313);
+    /* link j2: what it passes on */
     const ariane6_real_t t319 = t103 * (t311 + (t63 * t301 - t62 * t307)) + t104 * t318;
+    /* link j2: force and moment */
     const ariane6_real_t t320 = t309 * parameters[MX2] + t314 * parameters[MY2] - (t316
         + t173) * parameters[MZ2];
     const ariane6_real_t t321 = t139 * dq[0];
-    const ariane6_real_t t322 = ariane6_sign(t321);
+    const ariane6_real_t t322 = ariane6_sign(t321); /* joint j1: coulomb_friction */
+    /* joint j1: drive */
     const ariane6_real_t t323 = ARIANE6_C(4063.3400000000006) * t135
         + ARIANE6_C(82.55365977800001) * (t137 * t137) * (t138 * t138);
     const ariane6_real_t t324 = t137 * t323 * t169 * parameters[IA1] - (t321 * parameters[FV1]
         + t322 * parameters[FC1]);
     const ariane6_real_t t325 = input[0] * (ARIANE6_C(0.004) * t139) + (t139 * t324 + (t319
         + ARIANE6_C(0.18) * (t320 + t313)));
-    const ariane6_real_t t326 = ariane6_sign(dq[5]);
+    const ariane6_real_t t326 = ariane6_sign(dq[5]); /* joint j6: coulomb_friction */
     const ariane6_real_t t327 = ARIANE6_C(1.0e2) * (ARIANE6_C(1.0e2) * dq[5] * parameters[FV6]
         + t326 * parameters[FC6]) + t270;
     const ariane6_real_t t328 = ARIANE6_C(5.0) * input[5] - t327;
     const ariane6_real_t t329 = t17 * dq[4];
-    const ariane6_real_t t330 = ariane6_sign(t329);
+    const ariane6_real_t t330 = ariane6_sign(t329); /* joint j5: coulomb_friction */
+    /* joint j5: drive */
     const ariane6_real_t t331 = ARIANE6_C(3549.6000000000004) * t13
         + ARIANE6_C(62.9983008) * (t15 * t15) * (t16 * t16);
     const ariane6_real_t t332 = t329 * parameters[FV5] + t330 * parameters[FC5]
         - t15 * t331 * (dq[4] * dq[4]) * parameters[IA5];
     const ariane6_real_t t333 = input[4] * (ARIANE6_C(0.004) * t17) - (t17 * t332 - t282) + t328 * t6;
-    const ariane6_real_t t334 = ariane6_sign(dq[3]);
+    const ariane6_real_t t334 = ariane6_sign(dq[3]); /* joint j4: coulomb_friction */
     const ariane6_real_t t335 = ARIANE6_C(1.0e2) * (ARIANE6_C(1.0e2) * dq[3] * parameters[FV4]
         + t334 * parameters[FC4]) - t304;
     const ariane6_real_t t336 = ARIANE6_C(5.0) * input[3] - t335 + t328 * t31 - t333 * t37;
     const ariane6_real_t t337 = t325 - t328 * t122 + t333 * t147 - t336 * t153;
-    const ariane6_real_t t338 = t42 * t293 - t45 * t296;
+    const ariane6_real_t t338 = t42 * t293 - t45 * t296; /* link j4: what it passes on */
+    /* link j4: force and moment */
     const ariane6_real_t t339 = parameters[MZ4] * (t284 + t275) - (parameters[MX4] * t272
         + parameters[MY4] * t222);
+    /* link j5: what it passes on */
     const ariane6_real_t t340 = parameters[M4] * t198 + t339 + (t13 * t288 - t16 * t291);
+    /* link j4: what it passes on */
     const ariane6_real_t t341 = t45 * t278 - t42 * t286 - (ARIANE6_C(-0.17) * t340 - ARIANE6_C(0.488) * t338);
+    /* link j3: force and moment */
     const ariane6_real_t t342 = parameters[XY3] * (t196 - t182) - t187 * (parameters[XX3] - parameters[YY3])
         + (parameters[MY3] * t180 - parameters[MX3] * t195);
-    const ariane6_real_t t343 = t342 + t341;
+    const ariane6_real_t t343 = t342 + t341; /* link j4: what it passes on */
     const ariane6_real_t t344 = t68 * dq[2];
-    const ariane6_real_t t345 = ariane6_sign(t344);
+    const ariane6_real_t t345 = ariane6_sign(t344); /* joint j3: coulomb_friction */
+    /* joint j3: drive */
     const ariane6_real_t t346 = ARIANE6_C(-8377.600000000002) * t65
         - ARIANE6_C(350.9209088000001) * (t67 * t67) * (t64 * t64);
     const ariane6_real_t t347 = t344 * parameters[FV3] + t345 * parameters[FC3]
         + t67 * t346 * (dq[2] * dq[2]) * parameters[IA3];
     const ariane6_real_t t348 = input[2] * (ARIANE6_C(0.004) * t68) - (t68 * t347 + t343) + t328 * t75;
     const ariane6_real_t t349 = t348 - t333 * t79 + t336 * t86;
+    /* link j4: what it passes on */
     const ariane6_real_t t350 = parameters[M3] * t180 + (parameters[MX3] * t185 - parameters[MY3] * t187)
         + t338;
     const ariane6_real_t t351 = parameters[M3] * t195 + (parameters[MY3] * t197 - parameters[MX3] * t187)
         + t340;
+    /* link j2: force and moment */
     const ariane6_real_t t352 = t178 * (parameters[XX2] - parameters[YY2]) - (t316 - t173) * parameters[XY2]
         - (t171 * parameters[MY2] - t176 * parameters[MX2]);
+    /* link j3: what it passes on */
     const ariane6_real_t t353 = t352 - (t343 - ARIANE6_C(0.685) * (t62 * t350 + t63 * t351));
     const ariane6_real_t t354 = t109 * dq[1];
-    const ariane6_real_t t355 = ariane6_sign(t354);
+    const ariane6_real_t t355 = ariane6_sign(t354); /* joint j2: coulomb_friction */
+    /* joint j2: drive */
     const ariane6_real_t t356 = ARIANE6_C(-12691.800000000003) * t106
         - ARIANE6_C(805.4089362000002) * (t108 * t108) * (t105 * t105);
     const ariane6_real_t t357 = t354 * parameters[FV2] + t355 * parameters[FC2]

@@ -28,15 +28,15 @@
  */
 #include "ariane6_private.h"
 
-#if ARIANE6_GENERATION != 0xBA206C14UL
+#if ARIANE6_GENERATION != 0x13CD28B3UL
 #error "ariane6.h and ariane6_forward_kinematics.c are of different generations: generate the arm again"
 #endif
 
-int ariane6_forward_kinematics(
+ariane6_status_t ariane6_forward_kinematics(
     const ariane6_real_t q[ARIANE6_N_JOINTS],
     ariane6_real_t out[16 * ARIANE6_N_LINKS])
 {
-    int status = ARIANE6_STATUS_OK;
+    ariane6_status_t status = ARIANE6_STATUS_OK;
 
     if (!ariane6_within_joints(q, ARIANE6_C(1.0e8))) {
         status |= ARIANE6_STATUS_INPUT;
@@ -64,7 +64,7 @@ int ariane6_forward_kinematics(
     out[5] = t0;
     out[10] = ARIANE6_C(1.0);
     out[15] = ARIANE6_C(1.0);
-    const ariane6_real_t t3 = t0 * t2;
+    const ariane6_real_t t3 = t0 * t2; /* link j2: pose */
     out[16] = t3;
     const ariane6_real_t t5 = t0 * t4;
     out[17] = -t5;
@@ -81,7 +81,7 @@ int ariane6_forward_kinematics(
     out[24] = t4;
     out[25] = t2;
     out[31] = ARIANE6_C(1.0);
-    const ariane6_real_t t12 = t10 * t3 - t11 * t5;
+    const ariane6_real_t t12 = t10 * t3 - t11 * t5; /* link j3: pose */
     out[32] = t12;
     const ariane6_real_t t13 = t11 * t3 + t10 * t5;
     out[33] = -t13;
@@ -95,14 +95,14 @@ int ariane6_forward_kinematics(
     out[38] = -t0;
     const ariane6_real_t t17 = t9 + ARIANE6_C(0.685) * t7;
     out[39] = t17;
-    const ariane6_real_t t18 = t4 * t10 + t2 * t11;
+    const ariane6_real_t t18 = t4 * t10 + t2 * t11; /* link j3: motion */
     out[40] = t18;
     const ariane6_real_t t19 = t2 * t10 - t4 * t11;
     out[41] = t19;
-    const ariane6_real_t t20 = ARIANE6_C(0.685) * t4;
+    const ariane6_real_t t20 = ARIANE6_C(0.685) * t4; /* link j3: pose */
     out[43] = t20;
     out[47] = ARIANE6_C(1.0);
-    const ariane6_real_t t23 = t21 * t12 - t1 * t22;
+    const ariane6_real_t t23 = t21 * t12 - t1 * t22; /* link j4: pose */
     out[48] = t23;
     const ariane6_real_t t24 = t22 * t12 + t1 * t21;
     out[49] = -t24;
@@ -116,15 +116,15 @@ int ariane6_forward_kinematics(
     out[54] = -t16;
     const ariane6_real_t t28 = t17 + (ARIANE6_C(-0.17) * t15 + ARIANE6_C(-0.488) * t16);
     out[55] = t28;
-    const ariane6_real_t t29 = t21 * t18;
+    const ariane6_real_t t29 = t21 * t18; /* link j4: velocities by those of the joints */
     out[56] = t29;
     const ariane6_real_t t30 = t22 * t18;
     out[57] = -t30;
     out[58] = t19;
-    const ariane6_real_t t31 = t20 + (ARIANE6_C(-0.17) * t18 + ARIANE6_C(0.488) * t19);
+    const ariane6_real_t t31 = t20 + (ARIANE6_C(-0.17) * t18 + ARIANE6_C(0.488) * t19); /* link j4: pose */
     out[59] = t31;
     out[63] = ARIANE6_C(1.0);
-    const ariane6_real_t t34 = t32 * t23 - t33 * t13;
+    const ariane6_real_t t34 = t32 * t23 - t33 * t13; /* link j5: pose */
     out[64] = t34;
     const ariane6_real_t t35 = t33 * t23 + t32 * t13;
     out[65] = -t35;
@@ -136,7 +136,7 @@ int ariane6_forward_kinematics(
     out[69] = -t37;
     out[70] = -t27;
     out[71] = t28;
-    const ariane6_real_t t38 = t32 * t29 + t33 * t19;
+    const ariane6_real_t t38 = t32 * t29 + t33 * t19; /* link j5: velocities by those of the joints */
     out[72] = t38;
     const ariane6_real_t t39 = t32 * t19 - t33 * t29;
     out[73] = t39;

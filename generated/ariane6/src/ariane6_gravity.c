@@ -80,11 +80,11 @@
  */
 #include "ariane6_private.h"
 
-#if ARIANE6_GENERATION != 0xBA206C14UL
+#if ARIANE6_GENERATION != 0x13CD28B3UL
 #error "ariane6.h and ariane6_gravity.c are of different generations: generate the arm again"
 #endif
 
-int ariane6_gravity(
+ariane6_status_t ariane6_gravity(
     const ariane6_real_t q[ARIANE6_N_JOINTS],
     const ariane6_real_t parameters[ARIANE6_N_PARAMETERS],
     ariane6_real_t out[ARIANE6_N_JOINTS])
@@ -92,7 +92,7 @@ int ariane6_gravity(
     enum { ZZ1R = 0, XX2R, XY2, XZ2R, YZ2, ZZ2R, MX2R, MY2, XX3R, XY3R, XZ3, YZ3, ZZ3R, MX3R, MY3R, XX4R, XY4,
         XZ4, YZ4, ZZ4R, MX4, MY4R, XX5R, XY5, XZ5, YZ5, ZZ5R, MX5, MY5R, XX6R, XY6, XZ6R, YZ6R, ZZ6, MX6, MY6,
         FV1, FC1, IA1, FV2, FC2, IA2, FV3, FC3, IA3, FV4, FC4, IA4, FV5, FC5, IA5, FV6, FC6, IA6 };
-    int status = ARIANE6_STATUS_OK;
+    ariane6_status_t status = ARIANE6_STATUS_OK;
 
     if (!ariane6_within_joints(q, ARIANE6_C(1.0e8))
         || !ARIANE6_PARAMETERS_USABLE(ariane6_within(parameters, 54, ARIANE6_C(1.0e18)))) {
@@ -121,41 +121,52 @@ int ariane6_gravity(
     ARIANE6_SINCOS(q[4], &t9, &t11);
     ariane6_real_t t16, t14;
     ARIANE6_SINCOS(q[5], &t16, &t14);
-    const ariane6_real_t t1 = ARIANE6_C(-9.81) * t0;
+    const ariane6_real_t t1 = ARIANE6_C(-9.81) * t0; /* link j2: motion */
     const ariane6_real_t t4 = ARIANE6_C(9.81) * t3;
-    const ariane6_real_t t6 = t2 * t1 - t5 * t4;
-    const ariane6_real_t t8 = t7 * t6;
-    const ariane6_real_t t10 = t5 * t1 + t2 * t4;
-    const ariane6_real_t t12 = t9 * t8 + t11 * t10;
-    const ariane6_real_t t13 = parameters[MY6] * t12;
+    const ariane6_real_t t6 = t2 * t1 - t5 * t4; /* link j3: motion */
+    const ariane6_real_t t8 = t7 * t6; /* link j4: motion */
+    const ariane6_real_t t10 = t5 * t1 + t2 * t4; /* link j3: motion */
+    const ariane6_real_t t12 = t9 * t8 + t11 * t10; /* link j5: motion */
+    const ariane6_real_t t13 = parameters[MY6] * t12; /* link j6: force and moment */
     const ariane6_real_t t15 = parameters[MX6] * t12;
-    const ariane6_real_t t18 = t17 * t6;
+    const ariane6_real_t t18 = t17 * t6; /* link j4: motion */
+    /* link j6: what it passes on */
     const ariane6_real_t t19 = t14 * t13 + t16 * t15 - parameters[MY5R] * t18;
-    const ariane6_real_t t20 = t11 * t8 - t9 * t10;
+    const ariane6_real_t t20 = t11 * t8 - t9 * t10; /* link j5: motion */
+    /* link j6: force and moment */
     const ariane6_real_t t21 = parameters[MX6] * (t16 * t20 + t14 * t18) + parameters[MY6] * (t14 * t20
         - t16 * t18);
-    const ariane6_real_t t22 = parameters[MX5] * t18 + t21;
+    const ariane6_real_t t22 = parameters[MX5] * t18 + t21; /* link j6: what it passes on */
+    /* link j5: what it passes on */
     const ariane6_real_t t23 = parameters[MY4R] * t10 + (t11 * t19 - t9 * t22);
+    /* link j6: what it passes on */
     const ariane6_real_t t24 = parameters[MX5] * t12 + parameters[MY5R] * t20 + (t14 * t15 - t16 * t13);
-    const ariane6_real_t t25 = parameters[MX4] * t10 + t24;
-    const ariane6_real_t t26 = t7 * t23 + t17 * t25;
+    const ariane6_real_t t25 = parameters[MX4] * t10 + t24; /* link j5: what it passes on */
+    const ariane6_real_t t26 = t7 * t23 + t17 * t25; /* link j4: what it passes on */
+    /* link j5: what it passes on */
     const ariane6_real_t t27 = parameters[MX4] * t18 + parameters[MY4R] * t8 + (t9 * t19 + t11 * t22);
+    /* link j2: what it passes on */
     const ariane6_real_t t28 = t0 * (t2 * t26 - t5 * t27) + t3 * (t5 * t26 + t2 * t27);
+    /* joint j1: drive */
     const ariane6_real_t t30 = ARIANE6_SQRT(ARIANE6_C(0.0406334) * t29 + ARIANE6_C(0.10828541));
     const ariane6_real_t t32 = ARIANE6_C(0.061525739908548135) * t30 / t31;
     out[0] = t32 * t28;
+    /* link j4: what it passes on */
     const ariane6_real_t t33 = parameters[MX3R] * t10 + parameters[MY3R] * t6 + (t7 * t25 - t17 * t23);
+    /* joint j2: drive */
     const ariane6_real_t t34 = ARIANE6_SQRT(ARIANE6_C(0.126918) * (ARIANE6_C(-0.766044443118978) * t3
         + ARIANE6_C(0.6427876096865393) * t0) + ARIANE6_C(0.420682));
     const ariane6_real_t t35 = ARIANE6_C(0.019697757607273984) * t34 / (ARIANE6_C(0.766044443118978) * t0
         + ARIANE6_C(0.6427876096865393) * t3);
     out[1] = t35 * (parameters[MX2R] * t4 + parameters[MY2] * t1 + t33);
+    /* joint j3: drive */
     const ariane6_real_t t36 = ARIANE6_SQRT(ARIANE6_C(0.083776) * (ARIANE6_C(-0.052335956242943966) * t2
         + ARIANE6_C(-0.9986295347545738) * t5) + ARIANE6_C(0.38408000000000003));
     const ariane6_real_t t37 = ARIANE6_C(-0.029841482047364396) * t36 / (ARIANE6_C(-0.052335956242943966) * t5
         + ARIANE6_C(0.9986295347545738) * t2);
     out[2] = t37 * t33;
     out[3] = ARIANE6_C(0.2) * t27;
+    /* joint j5: drive */
     const ariane6_real_t t38 = ARIANE6_SQRT(ARIANE6_C(0.035496) * t9 + ARIANE6_C(0.097));
     const ariane6_real_t t39 = ARIANE6_C(0.07043047103899029) * t38 / t11;
     out[4] = t39 * t24;

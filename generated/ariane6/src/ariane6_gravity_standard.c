@@ -104,11 +104,11 @@
  */
 #include "ariane6_private.h"
 
-#if ARIANE6_GENERATION != 0xBA206C14UL
+#if ARIANE6_GENERATION != 0x13CD28B3UL
 #error "ariane6.h and ariane6_gravity_standard.c are of different generations: generate the arm again"
 #endif
 
-int ariane6_gravity_standard(
+ariane6_status_t ariane6_gravity_standard(
     const ariane6_real_t q[ARIANE6_N_JOINTS],
     const ariane6_real_t parameters[ARIANE6_N_STANDARD_PARAMETERS],
     ariane6_real_t out[ARIANE6_N_JOINTS])
@@ -117,7 +117,7 @@ int ariane6_gravity_standard(
         M2, XX3, XY3, XZ3, YY3, YZ3, ZZ3, MX3, MY3, MZ3, M3, XX4, XY4, XZ4, YY4, YZ4, ZZ4, MX4, MY4, MZ4, M4,
         XX5, XY5, XZ5, YY5, YZ5, ZZ5, MX5, MY5, MZ5, M5, XX6, XY6, XZ6, YY6, YZ6, ZZ6, MX6, MY6, MZ6, M6, FV1,
         FC1, IA1, FV2, FC2, IA2, FV3, FC3, IA3, FV4, FC4, IA4, FV5, FC5, IA5, FV6, FC6, IA6 };
-    int status = ARIANE6_STATUS_OK;
+    ariane6_status_t status = ARIANE6_STATUS_OK;
 
     if (!ariane6_within_joints(q, ARIANE6_C(1.0e8))
         || !ARIANE6_PARAMETERS_USABLE(ariane6_within(parameters, 78, ARIANE6_C(1.0e18)))) {
@@ -146,60 +146,72 @@ int ariane6_gravity_standard(
     ARIANE6_SINCOS(q[4], &t9, &t11);
     ariane6_real_t t14, t17;
     ARIANE6_SINCOS(q[5], &t14, &t17);
-    const ariane6_real_t t1 = ARIANE6_C(-9.81) * t0;
+    const ariane6_real_t t1 = ARIANE6_C(-9.81) * t0; /* link j2: motion */
     const ariane6_real_t t4 = ARIANE6_C(9.81) * t3;
-    const ariane6_real_t t6 = t2 * t1 - t5 * t4;
-    const ariane6_real_t t8 = t7 * t6;
-    const ariane6_real_t t10 = t5 * t1 + t2 * t4;
-    const ariane6_real_t t12 = t9 * t8 + t11 * t10;
+    const ariane6_real_t t6 = t2 * t1 - t5 * t4; /* link j3: motion */
+    const ariane6_real_t t8 = t7 * t6; /* link j4: motion */
+    const ariane6_real_t t10 = t5 * t1 + t2 * t4; /* link j3: motion */
+    const ariane6_real_t t12 = t9 * t8 + t11 * t10; /* link j5: motion */
     const ariane6_real_t t13 = t9 * t10 - t11 * t8;
-    const ariane6_real_t t16 = t15 * t6;
-    const ariane6_real_t t18 = t14 * t13 - t17 * t16;
-    const ariane6_real_t t19 = t12 * parameters[MY6] + t18 * parameters[MZ6];
-    const ariane6_real_t t20 = t17 * t13 + t14 * t16;
-    const ariane6_real_t t21 = t12 * parameters[MX6] - t20 * parameters[MZ6];
+    const ariane6_real_t t16 = t15 * t6; /* link j4: motion */
+    const ariane6_real_t t18 = t14 * t13 - t17 * t16; /* link j6: motion */
+    const ariane6_real_t t19 = t12 * parameters[MY6] + t18 * parameters[MZ6]; /* link j6: force and moment */
+    const ariane6_real_t t20 = t17 * t13 + t14 * t16; /* link j6: motion */
+    const ariane6_real_t t21 = t12 * parameters[MX6] - t20 * parameters[MZ6]; /* link j6: force and moment */
     const ariane6_real_t t22 = t20 * parameters[M6];
     const ariane6_real_t t23 = t18 * parameters[M6];
-    const ariane6_real_t t24 = t17 * t23 - t14 * t22;
+    const ariane6_real_t t24 = t17 * t23 - t14 * t22; /* link j6: what it passes on */
     const ariane6_real_t t25 = t17 * t19 + t14 * t21 + ARIANE6_C(0.3) * t24 - (t16 * parameters[MY5]
         + t12 * parameters[MZ5]);
-    const ariane6_real_t t26 = t18 * parameters[MX6] + t20 * parameters[MY6];
+    const ariane6_real_t t26 = t18 * parameters[MX6] + t20 * parameters[MY6]; /* link j6: force and moment */
+    /* link j6: what it passes on */
     const ariane6_real_t t27 = t13 * parameters[MZ5] + t16 * parameters[MX5] - t26;
+    /* link j5: what it passes on */
     const ariane6_real_t t28 = t16 * parameters[MZ4] - t10 * parameters[MY4] - (t11 * t25 - t9 * t27);
-    const ariane6_real_t t29 = t17 * t22 + t14 * t23;
+    const ariane6_real_t t29 = t17 * t22 + t14 * t23; /* link j6: what it passes on */
     const ariane6_real_t t30 = t12 * parameters[MX5] - t13 * parameters[MY5] + (t17 * t21 - t14 * t19
         + ARIANE6_C(-0.3) * t29);
+    /* link j5: what it passes on */
     const ariane6_real_t t31 = t8 * parameters[MZ4] + t10 * parameters[MX4] + t30;
-    const ariane6_real_t t32 = t13 * parameters[M5] + t29;
+    const ariane6_real_t t32 = t13 * parameters[M5] + t29; /* link j6: what it passes on */
     const ariane6_real_t t33 = t12 * parameters[M5] + t12 * parameters[M6];
-    const ariane6_real_t t34 = t11 * t32 - t9 * t33 - t8 * parameters[M4];
+    const ariane6_real_t t34 = t11 * t32 - t9 * t33 - t8 * parameters[M4]; /* link j5: what it passes on */
     const ariane6_real_t t35 = t24 - t16 * parameters[M5] - t16 * parameters[M4];
-    const ariane6_real_t t36 = t15 * t34 - t7 * t35;
+    const ariane6_real_t t36 = t15 * t34 - t7 * t35; /* link j4: what it passes on */
     const ariane6_real_t t37 = t15 * t31 - t7 * t28 + ARIANE6_C(-0.488) * t36 - t10 * parameters[MZ3];
+    /* link j5: what it passes on */
     const ariane6_real_t t38 = t16 * parameters[MX4] + t8 * parameters[MY4] + (t9 * t25 + t11 * t27);
+    /* link j4: what it passes on */
     const ariane6_real_t t39 = t6 * parameters[MZ3] + (ARIANE6_C(0.17) * t36 - t38);
+    /* link j2: what it passes on */
     const ariane6_real_t t40 = t0 * (t2 * t37 + t5 * t39 - t4 * parameters[MZ2]);
+    /* link j3: what it passes on */
     const ariane6_real_t t41 = t5 * t37 - t2 * t39 + ARIANE6_C(0.685) * t36 - t1 * parameters[MZ2];
+    /* joint j1: drive */
     const ariane6_real_t t43 = ARIANE6_SQRT(ARIANE6_C(0.0406334) * t42 + ARIANE6_C(0.10828541));
     const ariane6_real_t t45 = ARIANE6_C(0.061525739908548135) * t43 / t44;
     out[0] = t45 * (t40 + t3 * t41 + ARIANE6_C(0.18) * t36);
-    const ariane6_real_t t46 = t10 * parameters[M4] + (t9 * t32 + t11 * t33);
-    const ariane6_real_t t47 = t7 * t34 + t15 * t35;
+    const ariane6_real_t t46 = t10 * parameters[M4] + (t9 * t32 + t11 * t33); /* link j5: what it passes on */
+    const ariane6_real_t t47 = t7 * t34 + t15 * t35; /* link j4: what it passes on */
     const ariane6_real_t t48 = t15 * t28 + t7 * t31 + (ARIANE6_C(-0.17) * t46 + ARIANE6_C(-0.488) * t47);
     const ariane6_real_t t49 = t10 * parameters[MX3] + t6 * parameters[MY3] + t48;
+    /* link j3: what it passes on */
     const ariane6_real_t t50 = t5 * (t47 - t6 * parameters[M3]) + t2 * (t10 * parameters[M3] + t46);
     const ariane6_real_t t51 = t4 * parameters[MX2] + t1 * parameters[MY2] + (t49 + ARIANE6_C(0.685) * t50);
+    /* joint j2: drive */
     const ariane6_real_t t52 = ARIANE6_SQRT(ARIANE6_C(0.126918) * (ARIANE6_C(-0.766044443118978) * t3
         + ARIANE6_C(0.6427876096865393) * t0) + ARIANE6_C(0.420682));
     const ariane6_real_t t53 = ARIANE6_C(0.019697757607273984) * t52 / (ARIANE6_C(0.766044443118978) * t0
         + ARIANE6_C(0.6427876096865393) * t3);
     out[1] = t53 * t51;
+    /* joint j3: drive */
     const ariane6_real_t t54 = ARIANE6_SQRT(ARIANE6_C(0.083776) * (ARIANE6_C(-0.052335956242943966) * t2
         + ARIANE6_C(-0.9986295347545738) * t5) + ARIANE6_C(0.38408000000000003));
     const ariane6_real_t t55 = ARIANE6_C(-0.029841482047364396) * t54 / (ARIANE6_C(-0.052335956242943966) * t5
         + ARIANE6_C(0.9986295347545738) * t2);
     out[2] = t55 * t49;
     out[3] = ARIANE6_C(0.2) * t38;
+    /* joint j5: drive */
     const ariane6_real_t t56 = ARIANE6_SQRT(ARIANE6_C(0.035496) * t9 + ARIANE6_C(0.097));
     const ariane6_real_t t57 = ARIANE6_C(0.07043047103899029) * t56 / t11;
     out[4] = t57 * t30;

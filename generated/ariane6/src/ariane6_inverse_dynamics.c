@@ -6,7 +6,7 @@
  * Arm ariane6, description ac2a59ce556c2f1c.
  * SPDX-License-Identifier: 0BSD
  *
- * Operations: 618 (350 mul, 268 add, 0 neg), 8 div, 4 sqrt, 12 trig, 6 other.
+ * Operations: 618 (350 mul, 268 add, 0 neg), 8 div, 4 sqrt, 12 trig, 6 other calls (sign, select and the like).
  *
  * @param[in]   q           [6]   [rad]      joint coordinates; norm at most 10000
  * @param[in]   dq          [6]   [rad/s]    joint velocities; norm at most 100000
@@ -82,11 +82,11 @@
  */
 #include "ariane6_private.h"
 
-#if ARIANE6_GENERATION != 0xBA206C14UL
+#if ARIANE6_GENERATION != 0x13CD28B3UL
 #error "ariane6.h and ariane6_inverse_dynamics.c are of different generations: generate the arm again"
 #endif
 
-int ariane6_inverse_dynamics(
+ariane6_status_t ariane6_inverse_dynamics(
     const ariane6_real_t q[ARIANE6_N_JOINTS],
     const ariane6_real_t dq[ARIANE6_N_JOINTS],
     const ariane6_real_t ddq[ARIANE6_N_JOINTS],
@@ -96,7 +96,7 @@ int ariane6_inverse_dynamics(
     enum { ZZ1R = 0, XX2R, XY2, XZ2R, YZ2, ZZ2R, MX2R, MY2, XX3R, XY3R, XZ3, YZ3, ZZ3R, MX3R, MY3R, XX4R, XY4,
         XZ4, YZ4, ZZ4R, MX4, MY4R, XX5R, XY5, XZ5, YZ5, ZZ5R, MX5, MY5R, XX6R, XY6, XZ6R, YZ6R, ZZ6, MX6, MY6,
         FV1, FC1, IA1, FV2, FC2, IA2, FV3, FC3, IA3, FV4, FC4, IA4, FV5, FC5, IA5, FV6, FC6, IA6 };
-    int status = ARIANE6_STATUS_OK;
+    ariane6_status_t status = ARIANE6_STATUS_OK;
 
     if (!ariane6_within_joints(q, ARIANE6_C(1.0e8))
         || !ariane6_within_joints(dq, ARIANE6_C(1.0e10))
@@ -127,44 +127,44 @@ int ariane6_inverse_dynamics(
     ARIANE6_SINCOS(q[4], &t14, &t10);
     ariane6_real_t t30, t47;
     ARIANE6_SINCOS(q[5], &t30, &t47);
-    const ariane6_real_t t4 = t0 * t1 + t2 * t3;
+    const ariane6_real_t t4 = t0 * t1 + t2 * t3; /* link j3: motion */
     const ariane6_real_t t5 = dq[0] * t4;
     const ariane6_real_t t7 = dq[1] + dq[2];
-    const ariane6_real_t t9 = t8 * t7 - t6 * t5;
-    const ariane6_real_t t11 = t0 * t3 - t2 * t1;
+    const ariane6_real_t t9 = t8 * t7 - t6 * t5; /* link j4: motion */
+    const ariane6_real_t t11 = t0 * t3 - t2 * t1; /* link j3: motion */
     const ariane6_real_t t12 = dq[0] * t11;
-    const ariane6_real_t t13 = t12 - dq[3];
-    const ariane6_real_t t15 = t10 * t9 + t14 * t13;
+    const ariane6_real_t t13 = t12 - dq[3]; /* link j4: motion */
+    const ariane6_real_t t15 = t10 * t9 + t14 * t13; /* link j5: motion */
     const ariane6_real_t t16 = t10 * t13 - t14 * t9;
     const ariane6_real_t t17 = t15 * t16;
-    const ariane6_real_t t18 = t5 * t12;
+    const ariane6_real_t t18 = t5 * t12; /* link j3: motion */
     const ariane6_real_t t19 = ddq[1] + ddq[2];
-    const ariane6_real_t t20 = t18 + t19;
-    const ariane6_real_t t21 = t7 * t12;
+    const ariane6_real_t t20 = t18 + t19; /* link j4: motion */
+    const ariane6_real_t t21 = t7 * t12; /* link j3: motion */
     const ariane6_real_t t22 = ddq[0] * t4;
     const ariane6_real_t t23 = t21 - t22;
-    const ariane6_real_t t24 = t21 + t23;
+    const ariane6_real_t t24 = t21 + t23; /* link j4: motion */
     const ariane6_real_t t25 = t6 * t20 - t8 * t24;
     const ariane6_real_t t26 = t9 * t13;
     const ariane6_real_t t27 = t26 + t25;
-    const ariane6_real_t t28 = ddq[4] + t27;
-    const ariane6_real_t t29 = t28 - t17;
-    const ariane6_real_t t31 = t6 * t7 + t8 * t5;
+    const ariane6_real_t t28 = ddq[4] + t27; /* link j5: motion */
+    const ariane6_real_t t29 = t28 - t17; /* link j6: motion */
+    const ariane6_real_t t31 = t6 * t7 + t8 * t5; /* link j4: motion */
     const ariane6_real_t t32 = t9 * t31;
-    const ariane6_real_t t33 = t7 * t5;
+    const ariane6_real_t t33 = t7 * t5; /* link j3: motion */
     const ariane6_real_t t34 = ddq[0] * t11;
     const ariane6_real_t t35 = t33 + t34;
-    const ariane6_real_t t36 = t35 - ddq[3];
-    const ariane6_real_t t37 = t32 + t36;
-    const ariane6_real_t t38 = t8 * t20 + t6 * t24;
+    const ariane6_real_t t36 = t35 - ddq[3]; /* link j4: motion */
+    const ariane6_real_t t37 = t32 + t36; /* link j5: motion */
+    const ariane6_real_t t38 = t8 * t20 + t6 * t24; /* link j4: motion */
     const ariane6_real_t t39 = t31 * t13;
     const ariane6_real_t t40 = t38 - t39;
-    const ariane6_real_t t41 = t40 - t39;
+    const ariane6_real_t t41 = t40 - t39; /* link j5: motion */
     const ariane6_real_t t42 = t14 * t37 + t10 * t41;
     const ariane6_real_t t43 = dq[4] + t31;
     const ariane6_real_t t44 = t16 * t43;
     const ariane6_real_t t45 = t44 + t42;
-    const ariane6_real_t t46 = t44 + t45;
+    const ariane6_real_t t46 = t44 + t45; /* link j6: motion */
     const ariane6_real_t t48 = t30 * t29 + t47 * t46;
     const ariane6_real_t t49 = t47 * t43 - t30 * t15;
     const ariane6_real_t t50 = t16 - dq[5];
@@ -173,156 +173,192 @@ int ariane6_inverse_dynamics(
     const ariane6_real_t t53 = t30 * t46 - t47 * t29;
     const ariane6_real_t t54 = t47 * t15 + t30 * t43;
     const ariane6_real_t t55 = t54 * t50;
-    const ariane6_real_t t56 = t53 - t55 - t55;
-    const ariane6_real_t t57 = t14 * t41 - t10 * t37;
+    const ariane6_real_t t56 = t53 - t55 - t55; /* link j6: force and moment */
+    const ariane6_real_t t57 = t14 * t41 - t10 * t37; /* link j5: motion */
     const ariane6_real_t t58 = t15 * t43;
     const ariane6_real_t t59 = t58 + t57;
-    const ariane6_real_t t60 = ddq[5] + t59;
+    const ariane6_real_t t60 = ddq[5] + t59; /* link j6: motion */
     const ariane6_real_t t61 = t54 * t49;
-    const ariane6_real_t t62 = t61 + t60;
+    const ariane6_real_t t62 = t61 + t60; /* link j6: force and moment */
     const ariane6_real_t t63 = parameters[ZZ6] * t51 - parameters[XX6R] * t52 + parameters[XY6] * t56
         + parameters[XZ6R] * t62;
-    const ariane6_real_t t64 = t49 * t49;
+    const ariane6_real_t t64 = t49 * t49; /* link j6: motion */
     const ariane6_real_t t65 = t50 * t50;
     const ariane6_real_t t66 = dq[0] * dq[0];
-    const ariane6_real_t t67 = ARIANE6_C(0.18) * t66;
+    const ariane6_real_t t67 = ARIANE6_C(0.18) * t66; /* link j2: motion */
     const ariane6_real_t t68 = t2 * t67 + ARIANE6_C(-9.81) * t0;
     const ariane6_real_t t69 = t2 * dq[0];
     const ariane6_real_t t70 = t69 * t69;
     const ariane6_real_t t71 = dq[1] * dq[1];
-    const ariane6_real_t t72 = t68 + ARIANE6_C(0.685) * (t71 + t70);
-    const ariane6_real_t t73 = t0 * t67 + ARIANE6_C(9.81) * t2;
+    const ariane6_real_t t72 = t68 + ARIANE6_C(0.685) * (t71 + t70); /* link j3: motion */
+    const ariane6_real_t t73 = t0 * t67 + ARIANE6_C(9.81) * t2; /* link j2: motion */
     const ariane6_real_t t74 = t0 * dq[0];
     const ariane6_real_t t75 = t74 * t69;
-    const ariane6_real_t t76 = ddq[1] + t75;
+    const ariane6_real_t t76 = ddq[1] + t75; /* link j3: motion */
     const ariane6_real_t t77 = t73 + ARIANE6_C(0.685) * t76;
     const ariane6_real_t t78 = t1 * t72 - t3 * t77;
     const ariane6_real_t t79 = t12 * t12;
     const ariane6_real_t t80 = t7 * t7;
-    const ariane6_real_t t81 = t80 + t79;
+    const ariane6_real_t t81 = t80 + t79; /* link j4: motion */
     const ariane6_real_t t82 = t78 + (ARIANE6_C(-0.17) * t81 + ARIANE6_C(0.488) * t20);
     const ariane6_real_t t83 = t33 + t35;
-    const ariane6_real_t t84 = dq[1] * t74;
+    const ariane6_real_t t84 = dq[1] * t74; /* link j2: motion */
     const ariane6_real_t t85 = t2 * ddq[0];
-    const ariane6_real_t t86 = t85 - t84 - t84;
-    const ariane6_real_t t87 = ARIANE6_C(-0.18) * ddq[0];
-    const ariane6_real_t t88 = t87 + ARIANE6_C(-0.685) * t86;
-    const ariane6_real_t t89 = ARIANE6_C(0.17) * t83 + ARIANE6_C(0.488) * t24 - t88;
+    const ariane6_real_t t86 = t85 - t84 - t84; /* link j3: motion */
+    const ariane6_real_t t87 = ARIANE6_C(-0.18) * ddq[0]; /* link j2: motion */
+    const ariane6_real_t t88 = t87 + ARIANE6_C(-0.685) * t86; /* link j3: motion */
+    const ariane6_real_t t89 = ARIANE6_C(0.17) * t83 + ARIANE6_C(0.488) * t24 - t88; /* link j4: motion */
     const ariane6_real_t t90 = t6 * t82 - t8 * t89;
-    const ariane6_real_t t91 = t3 * t72 + t1 * t77;
+    const ariane6_real_t t91 = t3 * t72 + t1 * t77; /* link j3: motion */
     const ariane6_real_t t92 = t5 * t5;
-    const ariane6_real_t t93 = t80 + t92;
+    const ariane6_real_t t93 = t80 + t92; /* link j4: motion */
     const ariane6_real_t t94 = t19 - t18;
     const ariane6_real_t t95 = t91 + (ARIANE6_C(-0.488) * t93 + ARIANE6_C(-0.17) * t94);
-    const ariane6_real_t t96 = t14 * t90 + t10 * t95;
+    const ariane6_real_t t96 = t14 * t90 + t10 * t95; /* link j5: motion */
+    /* link j6: force and moment */
     const ariane6_real_t t97 = parameters[YZ6R] * (t64 - t65) + t63 + parameters[MY6] * t96;
     const ariane6_real_t t98 = t52 - t51;
     const ariane6_real_t t99 = t61 - t60;
     const ariane6_real_t t100 = parameters[XY6] * t98 - (parameters[XX6R] - parameters[ZZ6]) * t55
         + parameters[YZ6R] * t99;
-    const ariane6_real_t t101 = t54 * t54;
+    const ariane6_real_t t101 = t54 * t54; /* link j6: motion */
+    /* link j6: force and moment */
     const ariane6_real_t t102 = parameters[XZ6R] * (t101 - t65) + t100 + parameters[MX6] * t96;
-    const ariane6_real_t t103 = t58 + t59;
+    const ariane6_real_t t103 = t58 + t59; /* link j6: motion */
     const ariane6_real_t t104 = t17 + t28;
+    /* link j5: force and moment */
     const ariane6_real_t t105 = parameters[XY5] * t103 - (parameters[ZZ5R] * t44 + parameters[XX5R] * t45)
         + parameters[XZ5] * t104;
-    const ariane6_real_t t106 = t16 * t16;
+    const ariane6_real_t t106 = t16 * t16; /* link j5: motion */
     const ariane6_real_t t107 = t43 * t43;
-    const ariane6_real_t t108 = t8 * t82 + t6 * t89;
+    const ariane6_real_t t108 = t8 * t82 + t6 * t89; /* link j4: motion */
+    /* link j6: what it passes on */
     const ariane6_real_t t109 = parameters[YZ5] * (t106 - t107) + t105 - parameters[MY5R] * t108 + (t47 * t97
         + t30 * t102);
+    /* link j6: force and moment */
     const ariane6_real_t t110 = parameters[ZZ6] * t60 - parameters[XX6R] * t61 + parameters[YZ6R] * t53
         - parameters[XZ6R] * t48;
-    const ariane6_real_t t111 = t10 * t90 - t14 * t95;
+    const ariane6_real_t t111 = t10 * t90 - t14 * t95; /* link j5: motion */
+    /* link j6: force and moment */
     const ariane6_real_t t112 = parameters[MX6] * (t30 * t111 + t47 * t108) + parameters[MY6] * (t47 * t111
         - t30 * t108);
     const ariane6_real_t t113 = parameters[XY6] * (t101 - t64) + t110 + t112;
+    /* link j5: force and moment */
     const ariane6_real_t t114 = (parameters[ZZ5R] - parameters[XX5R]) * t58 - parameters[XY5] * t46
         + parameters[YZ5] * t29;
-    const ariane6_real_t t115 = t15 * t15;
+    const ariane6_real_t t115 = t15 * t15; /* link j5: motion */
+    /* link j6: what it passes on */
     const ariane6_real_t t116 = parameters[XZ5] * (t107 - t115) + t114 + parameters[MX5] * t108 + t113;
-    const ariane6_real_t t117 = t26 + t27;
+    const ariane6_real_t t117 = t26 + t27; /* link j5: motion */
     const ariane6_real_t t118 = t32 - t36;
+    /* link j4: force and moment */
     const ariane6_real_t t119 = parameters[XX4R] * t40 - parameters[ZZ4R] * t39 + parameters[XY4] * t117
         - parameters[XZ4] * t118;
-    const ariane6_real_t t120 = t31 * t31;
+    const ariane6_real_t t120 = t31 * t31; /* link j4: motion */
     const ariane6_real_t t121 = t13 * t13;
+    /* link j5: what it passes on */
     const ariane6_real_t t122 = parameters[YZ4] * (t120 - t121) - t119 + parameters[MY4R] * t95 + (t10 * t109
         - t14 * t116);
+    /* link j5: force and moment */
     const ariane6_real_t t123 = parameters[ZZ5R] * t28 - parameters[XX5R] * t17 + parameters[YZ5] * t57
         - parameters[XZ5] * t42;
     const ariane6_real_t t124 = parameters[XY5] * (t115 - t106) + t123 + (parameters[MX5] * t96
         + parameters[MY5R] * t111);
-    const ariane6_real_t t125 = t124 + (t47 * t102 - t30 * t97);
+    const ariane6_real_t t125 = t124 + (t47 * t102 - t30 * t97); /* link j6: what it passes on */
+    /* link j4: force and moment */
     const ariane6_real_t t126 = parameters[XY4] * t41 - (parameters[XX4R] - parameters[ZZ4R]) * t26
         + parameters[YZ4] * t37;
-    const ariane6_real_t t127 = t9 * t9;
+    const ariane6_real_t t127 = t9 * t9; /* link j4: motion */
+    /* link j5: what it passes on */
     const ariane6_real_t t128 = parameters[XZ4] * (t127 - t121) + t126 + parameters[MX4] * t95 + t125;
+    /* link j6: force and moment */
     const ariane6_real_t t129 = parameters[MY6] * t99 - parameters[MX6] * (t64 + t65);
     const ariane6_real_t t130 = parameters[MY6] * (t101 + t65) - parameters[MX6] * t62;
+    /* link j6: what it passes on */
     const ariane6_real_t t131 = t47 * t129 + t30 * t130 - (parameters[MX5] * (t106 + t107)
         + parameters[MY5R] * t29);
     const ariane6_real_t t132 = parameters[MY5R] * (t115 + t107) - parameters[MX5] * t104
         + (parameters[MX6] * t56 + parameters[MY6] * t98);
+    /* link j5: what it passes on */
     const ariane6_real_t t133 = parameters[MY4R] * t37 - parameters[MX4] * (t120 + t121) + (t10 * t131
         + t14 * t132);
+    /* link j6: what it passes on */
     const ariane6_real_t t134 = parameters[MX5] * t103 + parameters[MY5R] * t46 - (t47 * t130 - t30 * t129);
+    /* link j5: what it passes on */
     const ariane6_real_t t135 = parameters[MY4R] * (t127 + t121) - parameters[MX4] * t118 - t134;
-    const ariane6_real_t t136 = t8 * t133 - t6 * t135;
+    const ariane6_real_t t136 = t8 * t133 - t6 * t135; /* link j4: what it passes on */
+    /* link j3: force and moment */
     const ariane6_real_t t137 = parameters[XZ3] * t94 - (parameters[ZZ3R] * t21 + parameters[XX3R] * t23
         + parameters[XY3R] * t83);
+    /* link j4: what it passes on */
     const ariane6_real_t t138 = parameters[MY3R] * t88 + (parameters[YZ3] * (t79 - t80) + t137) + (t6 * t122
         + t8 * t128 + ARIANE6_C(-0.488) * t136);
+    /* link j4: force and moment */
     const ariane6_real_t t139 = parameters[XX4R] * t32 + parameters[ZZ4R] * t36 + parameters[YZ4] * t25
         + parameters[XZ4] * t38;
     const ariane6_real_t t140 = parameters[XY4] * (t127 - t120) - t139 + (parameters[MX4] * t108
         + parameters[MY4R] * t90);
-    const ariane6_real_t t141 = t140 + (t14 * t109 + t10 * t116);
+    const ariane6_real_t t141 = t140 + (t14 * t109 + t10 * t116); /* link j5: what it passes on */
+    /* link j3: force and moment */
     const ariane6_real_t t142 = (parameters[XX3R] - parameters[ZZ3R]) * t33 - parameters[XY3R] * t24
         + parameters[YZ3] * t20;
+    /* link j4: what it passes on */
     const ariane6_real_t t143 = parameters[XZ3] * (t80 - t92) + t142 - parameters[MX3R] * t88 + (t141
         + ARIANE6_C(-0.17) * t136);
-    const ariane6_real_t t144 = dq[1] * t69;
+    const ariane6_real_t t144 = dq[1] * t69; /* link j2: motion */
     const ariane6_real_t t145 = t0 * ddq[0];
     const ariane6_real_t t146 = t144 + t145;
+    /* link j2: force and moment */
     const ariane6_real_t t147 = parameters[ZZ2R] * t144 + parameters[XX2R] * t146 + parameters[XY2] * t86
         + parameters[XZ2R] * t76;
+    /* link j3: what it passes on */
     const ariane6_real_t t148 = parameters[YZ2] * (t70 - t71) + t147 + parameters[MY2] * t87 + (t1 * t138
         - t3 * t143);
+    /* link j4: what it passes on */
     const ariane6_real_t t149 = parameters[MY3R] * t24 - parameters[MX3R] * t83 + t136;
-    const ariane6_real_t t150 = t144 + t146;
+    const ariane6_real_t t150 = t144 + t146; /* link j3: motion */
+    /* link j2: force and moment */
     const ariane6_real_t t151 = t84 * (parameters[XX2R] - parameters[ZZ2R]) + parameters[XY2] * t150
         + parameters[YZ2] * (ddq[1] - t75);
-    const ariane6_real_t t152 = t74 * t74;
+    const ariane6_real_t t152 = t74 * t74; /* link j2: motion */
+    /* link j3: what it passes on */
     const ariane6_real_t t153 = parameters[XZ2R] * (t71 - t152) + t151 - parameters[MX2R] * t87 + (t3 * t138
         + t1 * t143 + ARIANE6_C(0.685) * t149);
+    /* link j2: what it passes on */
     const ariane6_real_t t154 = t0 * t148 + t2 * t153 + ARIANE6_C(0.18) * (parameters[MX2R] * t86
         - parameters[MY2] * t150 + t149);
+    /* joint j1: drive */
     const ariane6_real_t t156 = ARIANE6_SQRT(ARIANE6_C(0.0406334) * t155 + ARIANE6_C(0.10828541));
     const ariane6_real_t t158 = ARIANE6_C(0.061525739908548135) * t156 / t157;
     const ariane6_real_t t159 = ARIANE6_C(-1.0) / t156;
     const ariane6_real_t t160 = t157 * (ARIANE6_C(-4063.3400000000006) * t159);
     const ariane6_real_t t161 = t160 * dq[0];
-    const ariane6_real_t t162 = ariane6_sign(t161);
+    const ariane6_real_t t162 = ariane6_sign(t161); /* joint j1: coulomb_friction */
+    /* joint j1: drive */
     const ariane6_real_t t163 = ARIANE6_C(-4063.3400000000006) * t155
         + ARIANE6_C(-82.55365977800001) * (t159 * t159) * (t157 * t157);
     const ariane6_real_t t164 = parameters[FV1] * t161 + parameters[FC1] * t162
         + parameters[IA1] * (t160 * ddq[0] - t159 * t163 * t66);
     out[0] = ARIANE6_C(250.0) * t164 + t158 * (parameters[ZZ1R] * ddq[0] + t154);
+    /* link j5: what it passes on */
     const ariane6_real_t t165 = parameters[MX4] * t117 - parameters[MY4R] * t41 + (t14 * t131 - t10 * t132);
-    const ariane6_real_t t166 = t6 * t133 + t8 * t135;
+    const ariane6_real_t t166 = t6 * t133 + t8 * t135; /* link j4: what it passes on */
     const ariane6_real_t t167 = t6 * t128 - t8 * t122 + (ARIANE6_C(-0.17) * t165 + ARIANE6_C(-0.488) * t166);
+    /* link j3: force and moment */
     const ariane6_real_t t168 = parameters[XX3R] * t18 + parameters[ZZ3R] * t19 - parameters[YZ3] * t34
         + parameters[XZ3] * t22;
     const ariane6_real_t t169 = parameters[MX3R] * t91 + parameters[MY3R] * t78 + (parameters[XY3R] * (t92
         - t79) + t168);
-    const ariane6_real_t t170 = t169 + t167;
+    const ariane6_real_t t170 = t169 + t167; /* link j4: what it passes on */
+    /* link j3: what it passes on */
     const ariane6_real_t t171 = t3 * (t166 - (parameters[MX3R] * t81 + parameters[MY3R] * t20))
         + t1 * (parameters[MX3R] * t94 - parameters[MY3R] * t93 + t165);
+    /* link j2: force and moment */
     const ariane6_real_t t172 = parameters[ZZ2R] * ddq[1] - parameters[XX2R] * t75 + parameters[YZ2] * t85
         + parameters[XZ2R] * t145;
     const ariane6_real_t t173 = parameters[MX2R] * t73 + parameters[MY2] * t68 + (parameters[XY2] * (t152
         - t70) + t172);
+    /* joint j2: drive */
     const ariane6_real_t t174 = ARIANE6_C(0.766044443118978) * t2 - ARIANE6_C(0.6427876096865393) * t0;
     const ariane6_real_t t175 = ARIANE6_SQRT(ARIANE6_C(-0.126918) * t174 + ARIANE6_C(0.420682));
     const ariane6_real_t t176 = ARIANE6_C(0.766044443118978) * t0 + ARIANE6_C(0.6427876096865393) * t2;
@@ -330,13 +366,15 @@ int ariane6_inverse_dynamics(
     const ariane6_real_t t178 = ARIANE6_C(1.0) / t175;
     const ariane6_real_t t179 = t176 * (ARIANE6_C(12691.800000000003) * t178);
     const ariane6_real_t t180 = t179 * dq[1];
-    const ariane6_real_t t181 = ariane6_sign(t180);
+    const ariane6_real_t t181 = ariane6_sign(t180); /* joint j2: coulomb_friction */
+    /* joint j2: drive */
     const ariane6_real_t t182 = ARIANE6_C(12691.800000000003) * t174
         + ARIANE6_C(-805.4089362000002) * (t178 * t178) * (t176 * t176);
     const ariane6_real_t t183 = parameters[FV2] * t180 + parameters[FC2] * t181
         + parameters[IA2] * (t178 * t182 * t71 + t179 * ddq[1]);
     const ariane6_real_t t184 = ARIANE6_C(250.0) * t183 + t177 * (t173 + (t170 + ARIANE6_C(0.685) * t171));
     out[1] = t184;
+    /* joint j3: drive */
     const ariane6_real_t t185 = ARIANE6_C(0.052335956242943966) * t1 + ARIANE6_C(0.9986295347545738) * t3;
     const ariane6_real_t t186 = ARIANE6_SQRT(ARIANE6_C(-0.083776) * t185 + ARIANE6_C(0.38408000000000003));
     const ariane6_real_t t187 = ARIANE6_C(0.052335956242943966) * t3 - ARIANE6_C(0.9986295347545738) * t1;
@@ -344,30 +382,35 @@ int ariane6_inverse_dynamics(
     const ariane6_real_t t189 = ARIANE6_C(1.0) / t186;
     const ariane6_real_t t190 = t187 * (ARIANE6_C(8377.600000000002) * t189);
     const ariane6_real_t t191 = t190 * dq[2];
-    const ariane6_real_t t192 = ariane6_sign(t191);
+    const ariane6_real_t t192 = ariane6_sign(t191); /* joint j3: coulomb_friction */
+    /* joint j3: drive */
     const ariane6_real_t t193 = ARIANE6_C(8377.600000000002) * t185
         + ARIANE6_C(-350.9209088000001) * (t189 * t189) * (t187 * t187);
+    /* joint j3: drive_inertia */
     const ariane6_real_t t194 = parameters[IA3] * (t189 * t193 * (dq[2] * dq[2]) + t190 * ddq[2]);
     const ariane6_real_t t195 = ARIANE6_C(250.0) * (parameters[FV3] * t191 + parameters[FC3] * t192 + t194)
         + t188 * t170;
     out[2] = t195;
-    const ariane6_real_t t196 = ariane6_sign(dq[3]);
+    const ariane6_real_t t196 = ariane6_sign(dq[3]); /* joint j4: coulomb_friction */
     const ariane6_real_t t197 = parameters[FV4] * (ARIANE6_C(1.0e2) * dq[3]) + parameters[FC4] * t196
         + parameters[IA4] * (ARIANE6_C(1.0e2) * ddq[3]);
     out[3] = ARIANE6_C(20.0) * t197 + ARIANE6_C(0.2) * t141;
+    /* joint j5: drive */
     const ariane6_real_t t198 = ARIANE6_SQRT(ARIANE6_C(0.035496) * t14 + ARIANE6_C(0.097));
     const ariane6_real_t t199 = ARIANE6_C(0.07043047103899029) * t198 / t10;
     const ariane6_real_t t200 = ARIANE6_C(-1.0) / t198;
     const ariane6_real_t t201 = t10 * (ARIANE6_C(-3549.6000000000004) * t200);
     const ariane6_real_t t202 = t201 * dq[4];
-    const ariane6_real_t t203 = ariane6_sign(t202);
+    const ariane6_real_t t203 = ariane6_sign(t202); /* joint j5: coulomb_friction */
+    /* joint j5: drive */
     const ariane6_real_t t204 = ARIANE6_C(-3549.6000000000004) * t14
         + ARIANE6_C(-62.9983008) * (t200 * t200) * (t10 * t10);
+    /* joint j5: drive_inertia */
     const ariane6_real_t t205 = parameters[IA5] * (t201 * ddq[4] - t200 * t204 * (dq[4] * dq[4]));
     const ariane6_real_t t206 = ARIANE6_C(250.0) * (parameters[FV5] * t202 + parameters[FC5] * t203 + t205)
         + t199 * t125;
     out[4] = t206;
-    const ariane6_real_t t207 = ariane6_sign(dq[5]);
+    const ariane6_real_t t207 = ariane6_sign(dq[5]); /* joint j6: coulomb_friction */
     const ariane6_real_t t208 = parameters[FV6] * (ARIANE6_C(1.0e2) * dq[5]) + parameters[FC6] * t207
         + parameters[IA6] * (ARIANE6_C(1.0e2) * ddq[5]);
     out[5] = ARIANE6_C(20.0) * t208 + ARIANE6_C(0.2) * t113;

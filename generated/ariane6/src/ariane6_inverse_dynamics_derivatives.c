@@ -7,16 +7,16 @@
  * Arm ariane6, description ac2a59ce556c2f1c.
  * SPDX-License-Identifier: 0BSD
  *
- * Operations: 2698 (1586 mul, 1109 add, 3 neg), 16 div, 4 sqrt, 12 trig, 10 other.
+ * Operations: 2698 (1586 mul, 1109 add, 3 neg), 16 div, 4 sqrt, 12 trig, 10 other calls (sign, select and the like).
  *
- * @param[in]   q             [6]   [rad]                joint coordinates; norm at most 10000
- * @param[in]   dq            [6]   [rad/s]              joint velocities; norm at most 100000
- * @param[in]   ddq           [6]   [rad/s^2]            joint accelerations; norm at most 1e+08
- * @param[in]   parameters    [54]                       base parameters; norm at most 1e+09
- * @param[out]  input         [6]   [A]                  inputs: motor currents, efforts where undriven
- * @param[out]  input_by_q    [36]  [(A) per (rad)]      d input / d q; 6 x 6, row-major
- * @param[out]  input_by_dq   [36]  [(A) per (rad/s)]    d input / d dq; 6 x 6, row-major
- * @param[out]  input_by_ddq  [36]  [(A) per (rad/s^2)]  d input / d ddq; 6 x 6, row-major
+ * @param[in]   q             [6]   [rad]              joint coordinates; norm at most 10000
+ * @param[in]   dq            [6]   [rad/s]            joint velocities; norm at most 100000
+ * @param[in]   ddq           [6]   [rad/s^2]          joint accelerations; norm at most 1e+08
+ * @param[in]   parameters    [54]                     base parameters; norm at most 1e+09
+ * @param[out]  input         [6]   [A]                inputs: motor currents, efforts where undriven
+ * @param[out]  input_by_q    [36]  [A per rad]        d input / d q; 6 x 6, row-major
+ * @param[out]  input_by_dq   [36]  [A per (rad/s)]    d input / d dq; 6 x 6, row-major
+ * @param[out]  input_by_ddq  [36]  [A per (rad/s^2)]  d input / d ddq; 6 x 6, row-major
  *
  * Coordinates:
  *
@@ -86,11 +86,11 @@
  */
 #include "ariane6_private.h"
 
-#if ARIANE6_GENERATION != 0xBA206C14UL
+#if ARIANE6_GENERATION != 0x13CD28B3UL
 #error "ariane6.h and ariane6_inverse_dynamics_derivatives.c are of different generations: generate the arm again"
 #endif
 
-int ariane6_inverse_dynamics_derivatives(
+ariane6_status_t ariane6_inverse_dynamics_derivatives(
     const ariane6_real_t q[ARIANE6_N_JOINTS],
     const ariane6_real_t dq[ARIANE6_N_JOINTS],
     const ariane6_real_t ddq[ARIANE6_N_JOINTS],
@@ -103,7 +103,7 @@ int ariane6_inverse_dynamics_derivatives(
     enum { ZZ1R = 0, XX2R, XY2, XZ2R, YZ2, ZZ2R, MX2R, MY2, XX3R, XY3R, XZ3, YZ3, ZZ3R, MX3R, MY3R, XX4R, XY4,
         XZ4, YZ4, ZZ4R, MX4, MY4R, XX5R, XY5, XZ5, YZ5, ZZ5R, MX5, MY5R, XX6R, XY6, XZ6R, YZ6R, ZZ6, MX6, MY6,
         FV1, FC1, IA1, FV2, FC2, IA2, FV3, FC3, IA3, FV4, FC4, IA4, FV5, FC5, IA5, FV6, FC6, IA6 };
-    int status = ARIANE6_STATUS_OK;
+    ariane6_status_t status = ARIANE6_STATUS_OK;
 
     if (!ariane6_within_joints(q, ARIANE6_C(1.0e8))
         || !ariane6_within_joints(dq, ARIANE6_C(1.0e10))
@@ -137,44 +137,44 @@ int ariane6_inverse_dynamics_derivatives(
     ARIANE6_SINCOS(q[4], &t14, &t10);
     ariane6_real_t t30, t47;
     ARIANE6_SINCOS(q[5], &t30, &t47);
-    const ariane6_real_t t4 = t0 * t1 + t2 * t3;
+    const ariane6_real_t t4 = t0 * t1 + t2 * t3; /* link j3: motion */
     const ariane6_real_t t5 = dq[0] * t4;
     const ariane6_real_t t7 = dq[1] + dq[2];
-    const ariane6_real_t t9 = t8 * t7 - t6 * t5;
-    const ariane6_real_t t11 = t2 * t1 - t0 * t3;
+    const ariane6_real_t t9 = t8 * t7 - t6 * t5; /* link j4: motion */
+    const ariane6_real_t t11 = t2 * t1 - t0 * t3; /* link j3: motion */
     const ariane6_real_t t12 = dq[0] * t11;
-    const ariane6_real_t t13 = dq[3] + t12;
-    const ariane6_real_t t15 = t10 * t9 - t14 * t13;
+    const ariane6_real_t t13 = dq[3] + t12; /* link j4: motion */
+    const ariane6_real_t t15 = t10 * t9 - t14 * t13; /* link j5: motion */
     const ariane6_real_t t16 = t14 * t9 + t10 * t13;
     const ariane6_real_t t17 = t15 * t16;
-    const ariane6_real_t t18 = t5 * t12;
+    const ariane6_real_t t18 = t5 * t12; /* link j3: motion */
     const ariane6_real_t t19 = ddq[1] + ddq[2];
-    const ariane6_real_t t20 = t18 - t19;
-    const ariane6_real_t t21 = t7 * t12;
+    const ariane6_real_t t20 = t18 - t19; /* link j4: motion */
+    const ariane6_real_t t21 = t7 * t12; /* link j3: motion */
     const ariane6_real_t t22 = ddq[0] * t4;
     const ariane6_real_t t23 = t21 + t22;
-    const ariane6_real_t t24 = t21 + t23;
+    const ariane6_real_t t24 = t21 + t23; /* link j4: motion */
     const ariane6_real_t t25 = t8 * t24 - t6 * t20;
     const ariane6_real_t t26 = t9 * t13;
     const ariane6_real_t t27 = t25 - t26;
-    const ariane6_real_t t28 = ddq[4] + t27;
-    const ariane6_real_t t29 = t17 + t28;
-    const ariane6_real_t t31 = t6 * t7 + t8 * t5;
+    const ariane6_real_t t28 = ddq[4] + t27; /* link j5: motion */
+    const ariane6_real_t t29 = t17 + t28; /* link j6: motion */
+    const ariane6_real_t t31 = t6 * t7 + t8 * t5; /* link j4: motion */
     const ariane6_real_t t32 = t9 * t31;
-    const ariane6_real_t t33 = t7 * t5;
+    const ariane6_real_t t33 = t7 * t5; /* link j3: motion */
     const ariane6_real_t t34 = ddq[0] * t11;
     const ariane6_real_t t35 = t33 - t34;
-    const ariane6_real_t t36 = t35 - ddq[3];
-    const ariane6_real_t t37 = t32 + t36;
-    const ariane6_real_t t38 = t8 * t20 + t6 * t24;
+    const ariane6_real_t t36 = t35 - ddq[3]; /* link j4: motion */
+    const ariane6_real_t t37 = t32 + t36; /* link j5: motion */
+    const ariane6_real_t t38 = t8 * t20 + t6 * t24; /* link j4: motion */
     const ariane6_real_t t39 = t31 * t13;
     const ariane6_real_t t40 = t39 - t38;
-    const ariane6_real_t t41 = t39 + t40;
+    const ariane6_real_t t41 = t39 + t40; /* link j5: motion */
     const ariane6_real_t t42 = t14 * t37 + t10 * t41;
     const ariane6_real_t t43 = dq[4] + t31;
     const ariane6_real_t t44 = t16 * t43;
     const ariane6_real_t t45 = t44 - t42;
-    const ariane6_real_t t46 = t44 + t45;
+    const ariane6_real_t t46 = t44 + t45; /* link j6: motion */
     const ariane6_real_t t48 = t30 * t29 - t47 * t46;
     const ariane6_real_t t49 = t30 * t15 - t47 * t43;
     const ariane6_real_t t50 = dq[5] + t16;
@@ -183,162 +183,197 @@ int ariane6_inverse_dynamics_derivatives(
     const ariane6_real_t t53 = t47 * t29 + t30 * t46;
     const ariane6_real_t t54 = t47 * t15 + t30 * t43;
     const ariane6_real_t t55 = t54 * t50;
-    const ariane6_real_t t56 = t55 + (t55 - t53);
-    const ariane6_real_t t57 = t14 * t41 - t10 * t37;
+    const ariane6_real_t t56 = t55 + (t55 - t53); /* link j6: force and moment */
+    const ariane6_real_t t57 = t14 * t41 - t10 * t37; /* link j5: motion */
     const ariane6_real_t t58 = t15 * t43;
     const ariane6_real_t t59 = t58 + t57;
-    const ariane6_real_t t60 = ddq[5] + t59;
+    const ariane6_real_t t60 = ddq[5] + t59; /* link j6: motion */
     const ariane6_real_t t61 = t54 * t49;
-    const ariane6_real_t t62 = t61 - t60;
+    const ariane6_real_t t62 = t61 - t60; /* link j6: force and moment */
     const ariane6_real_t t63 = parameters[XX6R] * t52 - parameters[ZZ6] * t51 - parameters[XY6] * t56
         + parameters[XZ6R] * t62;
-    const ariane6_real_t t64 = t49 * t49;
+    const ariane6_real_t t64 = t49 * t49; /* link j6: motion */
     const ariane6_real_t t65 = t50 * t50;
     const ariane6_real_t t66 = dq[0] * dq[0];
-    const ariane6_real_t t67 = ARIANE6_C(-0.18) * t66;
+    const ariane6_real_t t67 = ARIANE6_C(-0.18) * t66; /* link j2: motion */
     const ariane6_real_t t68 = t2 * t67 + ARIANE6_C(9.81) * t0;
     const ariane6_real_t t69 = t2 * dq[0];
     const ariane6_real_t t70 = t69 * t69;
     const ariane6_real_t t71 = dq[1] * dq[1];
-    const ariane6_real_t t72 = t68 + ARIANE6_C(-0.685) * (t71 + t70);
-    const ariane6_real_t t73 = t0 * t67 + ARIANE6_C(-9.81) * t2;
+    const ariane6_real_t t72 = t68 + ARIANE6_C(-0.685) * (t71 + t70); /* link j3: motion */
+    const ariane6_real_t t73 = t0 * t67 + ARIANE6_C(-9.81) * t2; /* link j2: motion */
     const ariane6_real_t t74 = t0 * dq[0];
     const ariane6_real_t t75 = t74 * t69;
-    const ariane6_real_t t76 = ddq[1] + t75;
+    const ariane6_real_t t76 = ddq[1] + t75; /* link j3: motion */
     const ariane6_real_t t77 = ARIANE6_C(0.685) * t76 - t73;
     const ariane6_real_t t78 = t1 * t72 + t3 * t77;
     const ariane6_real_t t79 = t12 * t12;
     const ariane6_real_t t80 = t7 * t7;
-    const ariane6_real_t t81 = t80 + t79;
+    const ariane6_real_t t81 = t80 + t79; /* link j4: motion */
     const ariane6_real_t t82 = t78 + (ARIANE6_C(0.17) * t81 + ARIANE6_C(0.488) * t20);
     const ariane6_real_t t83 = t33 + t35;
-    const ariane6_real_t t84 = dq[1] * t74;
+    const ariane6_real_t t84 = dq[1] * t74; /* link j2: motion */
     const ariane6_real_t t85 = t2 * ddq[0];
-    const ariane6_real_t t86 = t85 - t84 - t84;
-    const ariane6_real_t t87 = ARIANE6_C(-0.18) * ddq[0];
-    const ariane6_real_t t88 = t87 + ARIANE6_C(-0.685) * t86;
-    const ariane6_real_t t89 = ARIANE6_C(0.17) * t83 + ARIANE6_C(-0.488) * t24 - t88;
+    const ariane6_real_t t86 = t85 - t84 - t84; /* link j3: motion */
+    const ariane6_real_t t87 = ARIANE6_C(-0.18) * ddq[0]; /* link j2: motion */
+    const ariane6_real_t t88 = t87 + ARIANE6_C(-0.685) * t86; /* link j3: motion */
+    const ariane6_real_t t89 = ARIANE6_C(0.17) * t83 + ARIANE6_C(-0.488) * t24 - t88; /* link j4: motion */
     const ariane6_real_t t90 = t6 * t82 + t8 * t89;
-    const ariane6_real_t t91 = t3 * t72 - t1 * t77;
+    const ariane6_real_t t91 = t3 * t72 - t1 * t77; /* link j3: motion */
     const ariane6_real_t t92 = t5 * t5;
-    const ariane6_real_t t93 = t80 + t92;
+    const ariane6_real_t t93 = t80 + t92; /* link j4: motion */
     const ariane6_real_t t94 = t18 + t19;
     const ariane6_real_t t95 = t91 + (ARIANE6_C(0.488) * t93 + ARIANE6_C(0.17) * t94);
-    const ariane6_real_t t96 = t14 * t90 + t10 * t95;
+    const ariane6_real_t t96 = t14 * t90 + t10 * t95; /* link j5: motion */
+    /* link j6: force and moment */
     const ariane6_real_t t97 = parameters[YZ6R] * (t65 - t64) + t63 + parameters[MY6] * t96;
     const ariane6_real_t t98 = t52 - t51;
     const ariane6_real_t t99 = t61 + t60;
     const ariane6_real_t t100 = (parameters[XX6R] - parameters[ZZ6]) * t55 + parameters[XY6] * t98
         - parameters[YZ6R] * t99;
-    const ariane6_real_t t101 = t54 * t54;
+    const ariane6_real_t t101 = t54 * t54; /* link j6: motion */
+    /* link j6: force and moment */
     const ariane6_real_t t102 = parameters[XZ6R] * (t101 - t65) + t100 - parameters[MX6] * t96;
-    const ariane6_real_t t103 = t58 + t59;
+    const ariane6_real_t t103 = t58 + t59; /* link j6: motion */
     const ariane6_real_t t104 = t17 - t28;
+    /* link j5: force and moment */
     const ariane6_real_t t105 = parameters[ZZ5R] * t44 + parameters[XX5R] * t45 + parameters[XY5] * t103
         - parameters[XZ5] * t104;
-    const ariane6_real_t t106 = t16 * t16;
+    const ariane6_real_t t106 = t16 * t16; /* link j5: motion */
     const ariane6_real_t t107 = t43 * t43;
-    const ariane6_real_t t108 = t8 * t82 - t6 * t89;
+    const ariane6_real_t t108 = t8 * t82 - t6 * t89; /* link j4: motion */
+    /* link j6: what it passes on */
     const ariane6_real_t t109 = parameters[YZ5] * (t106 - t107) + t105 + parameters[MY5R] * t108 + (t30 * t102
         - t47 * t97);
+    /* link j6: force and moment */
     const ariane6_real_t t110 = parameters[YZ6R] * t53 - (parameters[XX6R] * t61 + parameters[ZZ6] * t60)
         + parameters[XZ6R] * t48;
-    const ariane6_real_t t111 = t14 * t95 - t10 * t90;
-    const ariane6_real_t t112 = t47 * t108 - t30 * t111;
+    const ariane6_real_t t111 = t14 * t95 - t10 * t90; /* link j5: motion */
+    const ariane6_real_t t112 = t47 * t108 - t30 * t111; /* link j6: motion */
     const ariane6_real_t t113 = t47 * t111 + t30 * t108;
+    /* link j6: force and moment */
     const ariane6_real_t t114 = parameters[XY6] * (t64 - t101) + t110 + (parameters[MX6] * t112
         - parameters[MY6] * t113);
+    /* link j5: force and moment */
     const ariane6_real_t t115 = (parameters[XX5R] - parameters[ZZ5R]) * t58 - parameters[XY5] * t46
         - parameters[YZ5] * t29;
-    const ariane6_real_t t116 = t15 * t15;
+    const ariane6_real_t t116 = t15 * t15; /* link j5: motion */
+    /* link j6: what it passes on */
     const ariane6_real_t t117 = parameters[XZ5] * (t116 - t107) + t115 + parameters[MX5] * t108 + t114;
-    const ariane6_real_t t118 = t26 - t27;
+    const ariane6_real_t t118 = t26 - t27; /* link j5: motion */
     const ariane6_real_t t119 = t36 - t32;
+    /* link j4: force and moment */
     const ariane6_real_t t120 = parameters[ZZ4R] * t39 + parameters[XX4R] * t40 - parameters[XY4] * t118
         + parameters[XZ4] * t119;
-    const ariane6_real_t t121 = t31 * t31;
+    const ariane6_real_t t121 = t31 * t31; /* link j4: motion */
     const ariane6_real_t t122 = t13 * t13;
+    /* link j5: what it passes on */
     const ariane6_real_t t123 = parameters[YZ4] * (t122 - t121) + t120 + parameters[MY4R] * t95 - (t10 * t109
         + t14 * t117);
+    /* link j5: force and moment */
     const ariane6_real_t t124 = parameters[XX5R] * t17 + parameters[ZZ5R] * t28 + parameters[YZ5] * t57
         - parameters[XZ5] * t42;
     const ariane6_real_t t125 = parameters[XY5] * (t116 - t106) + t124 + (parameters[MY5R] * t111
         - parameters[MX5] * t96);
-    const ariane6_real_t t126 = t125 + (t30 * t97 + t47 * t102);
+    const ariane6_real_t t126 = t125 + (t30 * t97 + t47 * t102); /* link j6: what it passes on */
+    /* link j4: force and moment */
     const ariane6_real_t t127 = (parameters[XX4R] - parameters[ZZ4R]) * t26 + parameters[XY4] * t41
         + parameters[YZ4] * t37;
-    const ariane6_real_t t128 = t9 * t9;
+    const ariane6_real_t t128 = t9 * t9; /* link j4: motion */
+    /* link j5: what it passes on */
     const ariane6_real_t t129 = parameters[XZ4] * (t128 - t122) + t127 - parameters[MX4] * t95 + t126;
+    /* link j6: force and moment */
     const ariane6_real_t t130 = parameters[MX6] * (t64 + t65) + parameters[MY6] * t99;
     const ariane6_real_t t131 = parameters[MY6] * (t101 + t65) + parameters[MX6] * t62;
+    /* link j6: what it passes on */
     const ariane6_real_t t132 = parameters[MX5] * (t106 + t107) + parameters[MY5R] * t29 + (t47 * t130
         - t30 * t131);
     const ariane6_real_t t133 = parameters[MY5R] * (t116 + t107) + parameters[MX5] * t104
         + (parameters[MX6] * t56 + parameters[MY6] * t98);
+    /* link j5: what it passes on */
     const ariane6_real_t t134 = parameters[MY4R] * t37 - parameters[MX4] * (t121 + t122) + (t14 * t133
         - t10 * t132);
+    /* link j6: what it passes on */
     const ariane6_real_t t135 = parameters[MY5R] * t46 - parameters[MX5] * t103 + (t30 * t130 + t47 * t131);
+    /* link j5: what it passes on */
     const ariane6_real_t t136 = parameters[MY4R] * (t128 + t122) + parameters[MX4] * t119 + t135;
-    const ariane6_real_t t137 = t8 * t134 - t6 * t136;
+    const ariane6_real_t t137 = t8 * t134 - t6 * t136; /* link j4: what it passes on */
+    /* link j3: force and moment */
     const ariane6_real_t t138 = parameters[XY3R] * t83 - (parameters[ZZ3R] * t21 + parameters[XX3R] * t23)
         - parameters[XZ3] * t94;
+    /* link j4: what it passes on */
     const ariane6_real_t t139 = parameters[YZ3] * (t80 - t79) + t138 - parameters[MY3R] * t88 - (t8 * t129
         - t6 * t123 + ARIANE6_C(-0.488) * t137);
+    /* link j4: force and moment */
     const ariane6_real_t t140 = parameters[XX4R] * t32 + parameters[ZZ4R] * t36 + parameters[YZ4] * t25
         - parameters[XZ4] * t38;
     const ariane6_real_t t141 = parameters[XY4] * (t121 - t128) + t140 + (parameters[MX4] * t108
         + parameters[MY4R] * t90);
-    const ariane6_real_t t142 = t141 + (t10 * t117 - t14 * t109);
+    const ariane6_real_t t142 = t141 + (t10 * t117 - t14 * t109); /* link j5: what it passes on */
+    /* link j3: force and moment */
     const ariane6_real_t t143 = (parameters[ZZ3R] - parameters[XX3R]) * t33 - parameters[XY3R] * t24
         + parameters[YZ3] * t20;
+    /* link j4: what it passes on */
     const ariane6_real_t t144 = parameters[MX3R] * t88 + (parameters[XZ3] * (t92 - t80) + t143) + (t142
         + ARIANE6_C(0.17) * t137);
-    const ariane6_real_t t145 = dq[1] * t69;
+    const ariane6_real_t t145 = dq[1] * t69; /* link j2: motion */
     const ariane6_real_t t146 = t0 * ddq[0];
     const ariane6_real_t t147 = t145 + t146;
+    /* link j2: force and moment */
     const ariane6_real_t t148 = parameters[ZZ2R] * t145 + parameters[XX2R] * t147 + parameters[XY2] * t86
         + parameters[XZ2R] * t76;
+    /* link j3: what it passes on */
     const ariane6_real_t t149 = parameters[YZ2] * (t70 - t71) + t148 + parameters[MY2] * t87 + (t3 * t144
         - t1 * t139);
+    /* link j4: what it passes on */
     const ariane6_real_t t150 = t137 - (parameters[MX3R] * t83 + parameters[MY3R] * t24);
-    const ariane6_real_t t151 = t145 + t147;
+    const ariane6_real_t t151 = t145 + t147; /* link j3: motion */
+    /* link j2: force and moment */
     const ariane6_real_t t152 = t84 * (parameters[ZZ2R] - parameters[XX2R]) - parameters[XY2] * t151
         + parameters[YZ2] * (t75 - ddq[1]);
-    const ariane6_real_t t153 = t74 * t74;
+    const ariane6_real_t t153 = t74 * t74; /* link j2: motion */
+    /* link j3: what it passes on */
     const ariane6_real_t t154 = parameters[XZ2R] * (t153 - t71) + t152 + parameters[MX2R] * t87 + (t3 * t139
         + t1 * t144 + ARIANE6_C(-0.685) * t150);
+    /* link j2: what it passes on */
     const ariane6_real_t t155 = t0 * t149 - t2 * t154 + ARIANE6_C(0.18) * (parameters[MX2R] * t86
         - parameters[MY2] * t151 + t150);
     const ariane6_real_t t156 = parameters[ZZ1R] * ddq[0] + t155;
+    /* joint j1: drive */
     const ariane6_real_t t158 = ARIANE6_SQRT(ARIANE6_C(0.0406334) * t157 + ARIANE6_C(0.10828541));
     const ariane6_real_t t160 = ARIANE6_C(0.061525739908548135) * t158 / t159;
     const ariane6_real_t t161 = ARIANE6_C(1.0) / t158;
     const ariane6_real_t t162 = ARIANE6_C(4063.3400000000006) * t161;
     const ariane6_real_t t163 = t159 * t162;
     const ariane6_real_t t164 = t163 * dq[0];
-    const ariane6_real_t t165 = ariane6_sign(t164);
-    const ariane6_real_t t166 = ARIANE6_C(82.55365977800001) * (t161 * t161);
+    const ariane6_real_t t165 = ariane6_sign(t164); /* joint j1: coulomb_friction */
+    const ariane6_real_t t166 = ARIANE6_C(82.55365977800001) * (t161 * t161); /* joint j1: drive */
     const ariane6_real_t t167 = t159 * t159;
     const ariane6_real_t t168 = ARIANE6_C(4063.3400000000006) * t157 + t166 * t167;
     const ariane6_real_t t169 = t161 * t168;
     const ariane6_real_t t170 = parameters[FV1] * t164 + parameters[FC1] * t165
         + parameters[IA1] * (t163 * ddq[0] - t169 * t66);
     input[0] = ARIANE6_C(250.0) * t170 + t160 * t156;
+    /* link j5: what it passes on */
     const ariane6_real_t t171 = parameters[MX4] * t118 + parameters[MY4R] * t41 + (t14 * t132 + t10 * t133);
-    const ariane6_real_t t172 = t6 * t134 + t8 * t136;
+    const ariane6_real_t t172 = t6 * t134 + t8 * t136; /* link j4: what it passes on */
     const ariane6_real_t t173 = t8 * t123 + t6 * t129 + (ARIANE6_C(0.17) * t171 + ARIANE6_C(-0.488) * t172);
+    /* link j3: force and moment */
     const ariane6_real_t t174 = parameters[ZZ3R] * t19 - parameters[XX3R] * t18 + parameters[YZ3] * t34
         + parameters[XZ3] * t22;
     const ariane6_real_t t175 = parameters[XY3R] * (t92 - t79) + t174 - (parameters[MX3R] * t91
         + parameters[MY3R] * t78);
-    const ariane6_real_t t176 = t175 + t173;
+    const ariane6_real_t t176 = t175 + t173; /* link j4: what it passes on */
     const ariane6_real_t t177 = parameters[MY3R] * t20 - parameters[MX3R] * t81 + t172;
     const ariane6_real_t t178 = parameters[MY3R] * t93 - parameters[MX3R] * t94 + t171;
+    /* link j2: force and moment */
     const ariane6_real_t t179 = parameters[ZZ2R] * ddq[1] - parameters[XX2R] * t75 + parameters[YZ2] * t85
         + parameters[XZ2R] * t146;
     const ariane6_real_t t180 = parameters[XY2] * (t153 - t70) + t179 - (parameters[MX2R] * t73
         + parameters[MY2] * t68);
+    /* link j3: what it passes on */
     const ariane6_real_t t181 = t180 + (t176 + ARIANE6_C(0.685) * (t3 * t177 - t1 * t178));
+    /* joint j2: drive */
     const ariane6_real_t t182 = ARIANE6_C(-0.766044443118978) * t2 + ARIANE6_C(0.6427876096865393) * t0;
     const ariane6_real_t t183 = ARIANE6_SQRT(ARIANE6_C(0.126918) * t182 + ARIANE6_C(0.420682));
     const ariane6_real_t t184 = ARIANE6_C(0.766044443118978) * t0 + ARIANE6_C(0.6427876096865393) * t2;
@@ -347,14 +382,15 @@ int ariane6_inverse_dynamics_derivatives(
     const ariane6_real_t t187 = ARIANE6_C(-12691.800000000003) * t186;
     const ariane6_real_t t188 = t184 * t187;
     const ariane6_real_t t189 = t188 * dq[1];
-    const ariane6_real_t t190 = ariane6_sign(t189);
-    const ariane6_real_t t191 = ARIANE6_C(-805.4089362000002) * (t186 * t186);
+    const ariane6_real_t t190 = ariane6_sign(t189); /* joint j2: coulomb_friction */
+    const ariane6_real_t t191 = ARIANE6_C(-805.4089362000002) * (t186 * t186); /* joint j2: drive */
     const ariane6_real_t t192 = t184 * t184;
     const ariane6_real_t t193 = ARIANE6_C(-12691.800000000003) * t182 + t191 * t192;
     const ariane6_real_t t194 = t186 * t193;
     const ariane6_real_t t195 = parameters[FV2] * t189 + parameters[FC2] * t190
         + parameters[IA2] * (t188 * ddq[1] - t194 * t71);
     input[1] = ARIANE6_C(250.0) * t195 + t185 * t181;
+    /* joint j3: drive */
     const ariane6_real_t t196 = ARIANE6_C(-0.052335956242943966) * t1 + ARIANE6_C(-0.9986295347545738) * t3;
     const ariane6_real_t t197 = ARIANE6_SQRT(ARIANE6_C(0.083776) * t196 + ARIANE6_C(0.38408000000000003));
     const ariane6_real_t t198 = ARIANE6_C(0.052335956242943966) * t3 + ARIANE6_C(-0.9986295347545738) * t1;
@@ -363,8 +399,8 @@ int ariane6_inverse_dynamics_derivatives(
     const ariane6_real_t t201 = ARIANE6_C(-8377.600000000002) * t200;
     const ariane6_real_t t202 = t198 * t201;
     const ariane6_real_t t203 = t202 * dq[2];
-    const ariane6_real_t t204 = ariane6_sign(t203);
-    const ariane6_real_t t205 = ARIANE6_C(-350.9209088000001) * (t200 * t200);
+    const ariane6_real_t t204 = ariane6_sign(t203); /* joint j3: coulomb_friction */
+    const ariane6_real_t t205 = ARIANE6_C(-350.9209088000001) * (t200 * t200); /* joint j3: drive */
     const ariane6_real_t t206 = t198 * t198;
     const ariane6_real_t t207 = ARIANE6_C(-8377.600000000002) * t196 + t205 * t206;
     const ariane6_real_t t208 = t200 * t207;
@@ -372,18 +408,19 @@ int ariane6_inverse_dynamics_derivatives(
     const ariane6_real_t t210 = parameters[FV3] * t203 + parameters[FC3] * t204
         + parameters[IA3] * (t202 * ddq[2] - t208 * t209);
     input[2] = ARIANE6_C(250.0) * t210 + t199 * t176;
-    const ariane6_real_t t211 = ariane6_sign(dq[3]);
+    const ariane6_real_t t211 = ariane6_sign(dq[3]); /* joint j4: coulomb_friction */
     const ariane6_real_t t212 = parameters[FV4] * (ARIANE6_C(1.0e2) * dq[3]) + parameters[FC4] * t211
         + parameters[IA4] * (ARIANE6_C(1.0e2) * ddq[3]);
     input[3] = ARIANE6_C(20.0) * t212 + ARIANE6_C(-0.2) * t142;
+    /* joint j5: drive */
     const ariane6_real_t t213 = ARIANE6_SQRT(ARIANE6_C(0.035496) * t14 + ARIANE6_C(0.097));
     const ariane6_real_t t214 = ARIANE6_C(0.07043047103899029) * t213 / t10;
     const ariane6_real_t t215 = ARIANE6_C(1.0) / t213;
     const ariane6_real_t t216 = ARIANE6_C(3549.6000000000004) * t215;
     const ariane6_real_t t217 = t10 * t216;
     const ariane6_real_t t218 = t217 * dq[4];
-    const ariane6_real_t t219 = ariane6_sign(t218);
-    const ariane6_real_t t220 = ARIANE6_C(62.9983008) * (t215 * t215);
+    const ariane6_real_t t219 = ariane6_sign(t218); /* joint j5: coulomb_friction */
+    const ariane6_real_t t220 = ARIANE6_C(62.9983008) * (t215 * t215); /* joint j5: drive */
     const ariane6_real_t t221 = t10 * t10;
     const ariane6_real_t t222 = ARIANE6_C(3549.6000000000004) * t14 + t220 * t221;
     const ariane6_real_t t223 = t215 * t222;
@@ -391,7 +428,7 @@ int ariane6_inverse_dynamics_derivatives(
     const ariane6_real_t t225 = parameters[FV5] * t218 + parameters[FC5] * t219
         + parameters[IA5] * (t217 * ddq[4] - t223 * t224);
     input[4] = ARIANE6_C(250.0) * t225 + t214 * t126;
-    const ariane6_real_t t226 = ariane6_sign(dq[5]);
+    const ariane6_real_t t226 = ariane6_sign(dq[5]); /* joint j6: coulomb_friction */
     const ariane6_real_t t227 = parameters[FV6] * (ARIANE6_C(1.0e2) * dq[5]) + parameters[FC6] * t226
         + parameters[IA6] * (ARIANE6_C(1.0e2) * ddq[5]);
     input[5] = ARIANE6_C(20.0) * t227 + ARIANE6_C(-0.2) * t114;
@@ -417,6 +454,7 @@ int ariane6_inverse_dynamics_derivatives(
     const ariane6_real_t t244 = parameters[XX6R] - t243;
     const ariane6_real_t t245 = t50 * t244 + parameters[XZ6R] * t54;
     const ariane6_real_t t246 = parameters[YZ6R] * t49 + t50 * t243;
+    /* link j6: inertia, momentum beyond */
     const ariane6_real_t t247 = t47 * (t242 - t240) + t30 * (t245 + t246);
     const ariane6_real_t t248 = t47 * t247;
     const ariane6_real_t t249 = parameters[XZ5] * t16;
@@ -434,85 +472,101 @@ int ariane6_inverse_dynamics_derivatives(
     const ariane6_real_t t261 = parameters[XY6] * t49 - t54 * t243;
     const ariane6_real_t t262 = parameters[XX5R] + t258;
     const ariane6_real_t t263 = t43 * t262 + parameters[XZ5] * t15 + (t30 * t261 - t47 * t260);
+    /* link j5: inertia, momentum beyond */
     const ariane6_real_t t264 = t10 * (t251 + t254) + t14 * (t259 + t263);
     const ariane6_real_t t265 = t10 * t264;
     const ariane6_real_t t266 = parameters[XZ4] * t31;
     const ariane6_real_t t267 = parameters[XY4] * t13;
     const ariane6_real_t t268 = t266 + t267 - (t254 - t265);
-    const ariane6_real_t t269 = t240 + t248 - (t249 + t253);
+    const ariane6_real_t t269 = t240 + t248 - (t249 + t253); /* link j6: inertia, momentum beyond */
     const ariane6_real_t t270 = parameters[YZ4] * t9;
-    const ariane6_real_t t271 = t267 + t270 + t269;
-    const ariane6_real_t t272 = t30 * t247;
+    const ariane6_real_t t271 = t267 + t270 + t269; /* link j5: inertia, momentum beyond */
+    const ariane6_real_t t272 = t30 * t247; /* link j6: inertia, momentum beyond */
     const ariane6_real_t t273 = parameters[ZZ5R] + t258;
     const ariane6_real_t t274 = t16 * t273 - parameters[YZ5] * t43 + (t272 - t246);
     const ariane6_real_t t275 = parameters[XZ5] * t43 + t15 * t273 + (t30 * t260 + t47 * t261);
     const ariane6_real_t t276 = ARIANE6_C(-0.5) * (parameters[XX4R] + parameters[ZZ4R]);
+    /* link j5: inertia, momentum beyond */
     const ariane6_real_t t277 = parameters[YZ4] * t31 + t13 * t276 + (t10 * t274 - t14 * t275);
+    /* link j6: inertia, momentum beyond */
     const ariane6_real_t t278 = parameters[XY5] * t15 + t16 * t262 + (t245 - t272);
     const ariane6_real_t t279 = t30 * t256 + t47 * t257 - (t15 * t258 + parameters[XY5] * t16);
     const ariane6_real_t t280 = parameters[XX4R] + t276;
+    /* link j5: inertia, momentum beyond */
     const ariane6_real_t t281 = t13 * t280 + parameters[XZ4] * t9 + (t10 * t278 + t14 * t279);
+    /* link j4: inertia, momentum beyond */
     const ariane6_real_t t282 = t6 * (t268 + t271) + t8 * (t281 - t277);
     const ariane6_real_t t283 = t6 * t282;
     const ariane6_real_t t284 = parameters[MY6] * t50;
     const ariane6_real_t t285 = parameters[MX6] * t50;
+    /* link j6: inertia, momentum beyond */
     const ariane6_real_t t286 = parameters[MY5R] * t43 + (t47 * t284 + t30 * t285);
     const ariane6_real_t t287 = parameters[MY6] * t54 + parameters[MX6] * t49;
     const ariane6_real_t t288 = t287 - parameters[MX5] * t43;
+    /* link j5: inertia, momentum beyond */
     const ariane6_real_t t289 = t14 * t288 - t10 * t286 - parameters[MY4R] * t13;
+    /* link j6: inertia, momentum beyond */
     const ariane6_real_t t290 = parameters[MY5R] * t15 + parameters[MX5] * t16 - (t30 * t284 - t47 * t285);
-    const ariane6_real_t t291 = parameters[MX4] * t13 + t290;
-    const ariane6_real_t t292 = t8 * t291 - t6 * t289;
+    const ariane6_real_t t291 = parameters[MX4] * t13 + t290; /* link j5: inertia, momentum beyond */
+    const ariane6_real_t t292 = t8 * t291 - t6 * t289; /* link j4: inertia, momentum beyond */
     const ariane6_real_t t293 = ARIANE6_C(0.17) * t292;
+    /* link j6: column of the mass matrix */
     const ariane6_real_t t294 = t47 * parameters[MY6] + t30 * parameters[MX6];
-    const ariane6_real_t t295 = parameters[MY4R] + t294;
+    const ariane6_real_t t295 = parameters[MY4R] + t294; /* link j5: inertia of it and all beyond */
+    /* link j6: column of the mass matrix */
     const ariane6_real_t t296 = t47 * parameters[MX6] - t30 * parameters[MY6];
-    const ariane6_real_t t297 = parameters[MX5] + t296;
-    const ariane6_real_t t298 = t10 * t297 - t14 * parameters[MY5R];
-    const ariane6_real_t t299 = parameters[MX4] + t298;
-    const ariane6_real_t t300 = t8 * t295 - t6 * t299;
-    const ariane6_real_t t301 = ARIANE6_C(-0.488) * t7;
-    const ariane6_real_t t302 = t300 * t301;
+    const ariane6_real_t t297 = parameters[MX5] + t296; /* link j6: inertia of it and all beyond */
+    const ariane6_real_t t298 = t10 * t297 - t14 * parameters[MY5R]; /* link j5: column of the mass matrix */
+    const ariane6_real_t t299 = parameters[MX4] + t298; /* link j5: inertia of it and all beyond */
+    const ariane6_real_t t300 = t8 * t295 - t6 * t299; /* link j4: column of the mass matrix */
+    const ariane6_real_t t301 = ARIANE6_C(-0.488) * t7; /* link j4: velocity of its origin */
+    const ariane6_real_t t302 = t300 * t301; /* link j4: inertia, momentum beyond */
+    /* link j5: inertia, momentum beyond */
     const ariane6_real_t t303 = parameters[MX4] * t31 - parameters[MY4R] * t9 - (t14 * t286 + t10 * t288);
-    const ariane6_real_t t304 = ARIANE6_C(0.488) * t303;
-    const ariane6_real_t t305 = t6 * t295 + t8 * t299;
+    const ariane6_real_t t304 = ARIANE6_C(0.488) * t303; /* link j4: inertia, momentum beyond */
+    const ariane6_real_t t305 = t6 * t295 + t8 * t299; /* link j4: column of the mass matrix */
     const ariane6_real_t t306 = ARIANE6_C(0.488) * t5 + ARIANE6_C(0.17) * t12;
-    const ariane6_real_t t307 = t305 * t306;
-    const ariane6_real_t t308 = t10 * parameters[MY5R] + t14 * t297;
-    const ariane6_real_t t309 = ARIANE6_C(-0.17) * t7;
-    const ariane6_real_t t310 = t308 * t309;
+    const ariane6_real_t t307 = t305 * t306; /* link j4: inertia, momentum beyond */
+    const ariane6_real_t t308 = t10 * parameters[MY5R] + t14 * t297; /* link j5: column of the mass matrix */
+    const ariane6_real_t t309 = ARIANE6_C(-0.17) * t7; /* link j4: velocity of its origin */
+    const ariane6_real_t t310 = t308 * t309; /* link j4: inertia, momentum beyond */
     const ariane6_real_t t311 = t293 + t304 + (t310 - t302 - t307);
     const ariane6_real_t t312 = parameters[XZ3] * t12;
     const ariane6_real_t t313 = parameters[XY3R] * t7;
     const ariane6_real_t t314 = t312 - t313 + (t311 + (t271 - t283 + (t302 - t293)));
-    const ariane6_real_t t315 = t266 - t270 + (t265 - t251);
+    const ariane6_real_t t315 = t266 - t270 + (t265 - t251); /* link j5: inertia, momentum beyond */
     const ariane6_real_t t316 = parameters[YZ3] * t5;
+    /* link j4: inertia, momentum beyond */
     const ariane6_real_t t317 = t313 - t316 + (t311 + (t315 - (t304 + t310)));
-    const ariane6_real_t t318 = t14 * t264;
+    const ariane6_real_t t318 = t14 * t264; /* link j5: inertia, momentum beyond */
     const ariane6_real_t t319 = parameters[ZZ4R] + t276;
     const ariane6_real_t t320 = t31 * t319 + parameters[YZ4] * t13 - (t259 - t318);
     const ariane6_real_t t321 = parameters[XZ4] * t13 + t9 * t319 + (t14 * t278 - t10 * t279);
+    /* link j4: inertia, momentum beyond */
     const ariane6_real_t t322 = t6 * t320 + t8 * t321 + (ARIANE6_C(-0.488) * t292 + t308 * t301);
     const ariane6_real_t t323 = ARIANE6_C(0.5) * (parameters[XX3R] + parameters[ZZ3R]);
     const ariane6_real_t t324 = t322 - (parameters[YZ3] * t12 + t7 * t323);
+    /* link j5: inertia, momentum beyond */
     const ariane6_real_t t325 = parameters[XY4] * t9 - t31 * t280 + (t318 - t263);
     const ariane6_real_t t326 = parameters[XY4] * t31 - t9 * t276 - (t14 * t274 + t10 * t275);
+    /* link j4: inertia, momentum beyond */
     const ariane6_real_t t327 = t6 * t325 + t8 * t326 + (ARIANE6_C(-0.17) * t303 - t300 * t309);
     const ariane6_real_t t328 = parameters[XX3R] - t323;
     const ariane6_real_t t329 = t7 * t328 - parameters[XZ3] * t5 - t327;
+    /* link j3: inertia, momentum beyond */
     const ariane6_real_t t330 = t1 * (t314 - t317) + t3 * (t324 - t329);
     const ariane6_real_t t331 = t1 * t330;
-    const ariane6_real_t t332 = parameters[MY3R] * t7 + t292;
+    const ariane6_real_t t332 = parameters[MY3R] * t7 + t292; /* link j4: inertia, momentum beyond */
     const ariane6_real_t t333 = parameters[MX3R] * t7 + t303;
-    const ariane6_real_t t334 = t1 * t332 + t3 * t333;
+    const ariane6_real_t t334 = t1 * t332 + t3 * t333; /* link j3: inertia, momentum beyond */
     const ariane6_real_t t335 = ARIANE6_C(0.685) * t334;
-    const ariane6_real_t t336 = t300 - parameters[MX3R];
+    const ariane6_real_t t336 = t300 - parameters[MX3R]; /* link j4: inertia of it and all beyond */
     const ariane6_real_t t337 = parameters[MY3R] + t308;
-    const ariane6_real_t t338 = t3 * t336 - t1 * t337;
-    const ariane6_real_t t339 = ARIANE6_C(0.685) * dq[1];
-    const ariane6_real_t t340 = t338 * t339;
-    const ariane6_real_t t341 = ARIANE6_C(-0.685) * t69;
-    const ariane6_real_t t342 = t305 * t341;
+    const ariane6_real_t t338 = t3 * t336 - t1 * t337; /* link j3: column of the mass matrix */
+    const ariane6_real_t t339 = ARIANE6_C(0.685) * dq[1]; /* link j3: velocity of its origin */
+    const ariane6_real_t t340 = t338 * t339; /* link j3: inertia, momentum beyond */
+    const ariane6_real_t t341 = ARIANE6_C(-0.685) * t69; /* link j3: velocity of its origin */
+    const ariane6_real_t t342 = t305 * t341; /* link j3: inertia, momentum beyond */
     const ariane6_real_t t343 = t335 + (t340 + t342);
     const ariane6_real_t t344 = parameters[XZ2R] * t69;
     const ariane6_real_t t345 = parameters[XY2] * dq[1];
@@ -523,149 +577,176 @@ int ariane6_inverse_dynamics_derivatives(
     const ariane6_real_t t350 = ARIANE6_C(0.5) * (parameters[XX2R] + parameters[ZZ2R]);
     const ariane6_real_t t351 = parameters[YZ2] * t69 + dq[1] * t350 + (t349 - t324);
     const ariane6_real_t t352 = t3 * t332 - t1 * t333;
-    const ariane6_real_t t353 = t3 * t337 + t1 * t336;
+    const ariane6_real_t t353 = t3 * t337 + t1 * t336; /* link j3: column of the mass matrix */
     const ariane6_real_t t354 = parameters[XX2R] - t350;
+    /* link j3: inertia, momentum beyond */
     const ariane6_real_t t355 = dq[1] * t354 - parameters[XZ2R] * t74 + (t329 + t349
         + (ARIANE6_C(0.685) * t352 + t353 * t339));
+    /* link j2: inertia, momentum beyond */
     const ariane6_real_t t356 = t2 * (t2 * (t348 - t346) + t0 * (t351 + t355));
-    const ariane6_real_t t357 = parameters[MY2] * dq[1] + t334;
+    const ariane6_real_t t357 = parameters[MY2] * dq[1] + t334; /* link j3: inertia, momentum beyond */
     const ariane6_real_t t358 = t352 - parameters[MX2R] * dq[1];
+    /* link j2: inertia, momentum beyond */
     const ariane6_real_t t359 = ARIANE6_C(0.18) * (t0 * t358 - t2 * t357) + t305 * (ARIANE6_C(0.18) * dq[0]);
     const ariane6_real_t t360 = ARIANE6_C(250.0) * (t163 * parameters[FV1]
         + parameters[IA1] * (t169 * (ARIANE6_C(-2.0) * dq[0])));
     input_by_dq[0] = t360 + t160 * (ARIANE6_C(2.0) * (t346 + t356 + t359));
-    const ariane6_real_t t361 = t8 * t282;
+    const ariane6_real_t t361 = t8 * t282; /* link j4: inertia, momentum beyond */
     const ariane6_real_t t362 = t8 * t289 + t6 * t291;
     const ariane6_real_t t363 = parameters[XY3R] * t5 - t12 * t328 - (t281 - t361 - (ARIANE6_C(-0.17) * t362
         + t300 * t306));
     const ariane6_real_t t364 = t6 * t321 - t8 * t320 + (ARIANE6_C(-0.488) * t362 + t308 * t306);
     const ariane6_real_t t365 = t5 * t323 + parameters[XY3R] * t12 + t364;
     const ariane6_real_t t366 = parameters[MX3R] * t12 - parameters[MY3R] * t5 + t362;
+    /* link j3: inertia, momentum beyond */
     const ariane6_real_t t367 = t1 * t363 + t3 * t365 + (ARIANE6_C(0.685) * t366 + t353 * t341);
+    /* link j2: derivatives */
     const ariane6_real_t t368 = ARIANE6_C(2.0) * (parameters[XY2] * t74 - t69 * t354 + t367);
+    /* link j3: inertia, momentum beyond */
     const ariane6_real_t t369 = parameters[XY2] * t69 + t74 * t350 - (t3 * t363 - t1 * t365 + t338 * t341);
-    const ariane6_real_t t370 = ARIANE6_C(2.0) * t369;
-    const ariane6_real_t t371 = t338 - parameters[MY2];
+    const ariane6_real_t t370 = ARIANE6_C(2.0) * t369; /* link j2: derivatives */
+    const ariane6_real_t t371 = t338 - parameters[MY2]; /* link j3: inertia of it and all beyond */
     const ariane6_real_t t372 = parameters[MX2R] - t353;
-    const ariane6_real_t t373 = ARIANE6_C(0.36) * dq[0];
+    const ariane6_real_t t373 = ARIANE6_C(0.36) * dq[0]; /* link j6: derivatives */
+    /* link j2: derivatives */
     const ariane6_real_t t374 = t0 * t368 - t2 * t370 + (t0 * t372 - t2 * t371) * t373;
     input_by_dq[6] = t185 * t374;
-    const ariane6_real_t t375 = ARIANE6_C(2.0) * t363;
+    const ariane6_real_t t375 = ARIANE6_C(2.0) * t363; /* link j3: derivatives */
     const ariane6_real_t t376 = ARIANE6_C(2.0) * t365;
-    const ariane6_real_t t377 = ARIANE6_C(-1.37) * t69;
-    const ariane6_real_t t378 = t1 * t375 + t3 * t376 + t353 * t377;
+    const ariane6_real_t t377 = ARIANE6_C(-1.37) * t69; /* link j6: derivatives */
+    const ariane6_real_t t378 = t1 * t375 + t3 * t376 + t353 * t377; /* link j3: derivatives */
     const ariane6_real_t t379 = t3 * t375 - t1 * t376 + t338 * t377;
     const ariane6_real_t t380 = t0 * t378 + t2 * t379 - (t2 * t338 + t0 * t353) * t373;
     input_by_dq[12] = t199 * t380;
-    const ariane6_real_t t381 = ARIANE6_C(2.0) * t325;
+    const ariane6_real_t t381 = ARIANE6_C(2.0) * t325; /* link j4: derivatives */
     const ariane6_real_t t382 = ARIANE6_C(2.0) * t326;
-    const ariane6_real_t t383 = ARIANE6_C(-0.34) * t7;
-    const ariane6_real_t t384 = t6 * t381 + t8 * t382 - t300 * t383;
+    const ariane6_real_t t383 = ARIANE6_C(-0.34) * t7; /* link j6: derivatives */
+    const ariane6_real_t t384 = t6 * t381 + t8 * t382 - t300 * t383; /* link j4: derivatives */
     const ariane6_real_t t385 = ARIANE6_C(2.0) * t315;
-    const ariane6_real_t t386 = ARIANE6_C(2.0) * t306;
+    const ariane6_real_t t386 = ARIANE6_C(2.0) * t306; /* link j6: derivatives */
     const ariane6_real_t t387 = ARIANE6_C(-0.976) * t7;
-    const ariane6_real_t t388 = t305 * t386 + t300 * t387 - t385;
-    const ariane6_real_t t389 = ARIANE6_C(1.37) * dq[1];
-    const ariane6_real_t t390 = t3 * t305;
+    const ariane6_real_t t388 = t305 * t386 + t300 * t387 - t385; /* link j4: derivatives */
+    const ariane6_real_t t389 = ARIANE6_C(1.37) * dq[1]; /* link j6: derivatives */
+    const ariane6_real_t t390 = t3 * t305; /* link j4: column of the mass matrix */
+    /* link j4: derivatives */
     const ariane6_real_t t391 = t3 * t388 - t1 * t384 + (t300 * t389 + t390 * t377);
-    const ariane6_real_t t392 = t1 * t305;
-    const ariane6_real_t t393 = t3 * t384 + t1 * t388 + t392 * t377;
+    const ariane6_real_t t392 = t1 * t305; /* link j4: column of the mass matrix */
+    const ariane6_real_t t393 = t3 * t384 + t1 * t388 + t392 * t377; /* link j4: derivatives */
     const ariane6_real_t t394 = t0 * t391 - t2 * t393 + (t2 * t392 - t0 * t390) * t373;
     input_by_dq[18] = ARIANE6_C(0.2) * t394;
-    const ariane6_real_t t395 = ARIANE6_C(2.0) * t278;
+    const ariane6_real_t t395 = ARIANE6_C(2.0) * t278; /* link j5: derivatives */
     const ariane6_real_t t396 = ARIANE6_C(2.0) * t279;
     const ariane6_real_t t397 = t10 * t395 + t14 * t396;
     const ariane6_real_t t398 = ARIANE6_C(2.0) * t269;
-    const ariane6_real_t t399 = t8 * t308;
+    const ariane6_real_t t399 = t8 * t308; /* link j5: column of the mass matrix */
+    /* link j5: derivatives */
     const ariane6_real_t t400 = t6 * t397 - t8 * t398 + (t298 * t386 - t399 * t383);
     const ariane6_real_t t401 = t14 * t395 - t10 * t396;
-    const ariane6_real_t t402 = t6 * t308;
-    const ariane6_real_t t403 = t401 + (t402 * t386 + t399 * t387);
-    const ariane6_real_t t404 = t1 * t298 - t3 * t402;
+    const ariane6_real_t t402 = t6 * t308; /* link j5: column of the mass matrix */
+    const ariane6_real_t t403 = t401 + (t402 * t386 + t399 * t387); /* link j5: derivatives */
+    const ariane6_real_t t404 = t1 * t298 - t3 * t402; /* link j5: column of the mass matrix */
+    /* link j5: derivatives */
     const ariane6_real_t t405 = t3 * t403 - t1 * t400 + (t399 * t389 - t404 * t377);
-    const ariane6_real_t t406 = t1 * t402 + t3 * t298;
-    const ariane6_real_t t407 = t3 * t400 + t1 * t403 + t406 * t377;
+    const ariane6_real_t t406 = t1 * t402 + t3 * t298; /* link j5: column of the mass matrix */
+    const ariane6_real_t t407 = t3 * t400 + t1 * t403 + t406 * t377; /* link j5: derivatives */
     const ariane6_real_t t408 = t0 * t405 - t2 * t407 + (t2 * t406 + t0 * t404) * t373;
     input_by_dq[24] = t214 * t408;
-    const ariane6_real_t t409 = ARIANE6_C(2.0) * t260;
+    const ariane6_real_t t409 = ARIANE6_C(2.0) * t260; /* link j6: derivatives */
     const ariane6_real_t t410 = ARIANE6_C(-2.0) * t261;
     const ariane6_real_t t411 = t47 * t409 + t30 * t410;
     const ariane6_real_t t412 = ARIANE6_C(-2.0) * t252;
     const ariane6_real_t t413 = t10 * t411 + t14 * t412;
     const ariane6_real_t t414 = t30 * t409 - t47 * t410;
-    const ariane6_real_t t415 = t10 * t294;
+    const ariane6_real_t t415 = t10 * t294; /* link j6: column of the mass matrix */
     const ariane6_real_t t416 = t6 * t296 - t8 * t415;
     const ariane6_real_t t417 = t14 * t294;
+    /* link j6: derivatives */
     const ariane6_real_t t418 = t6 * t413 - t8 * t414 + (t416 * t383 - t417 * t386);
     const ariane6_real_t t419 = t14 * t411 - t10 * t412;
-    const ariane6_real_t t420 = t6 * t415 + t8 * t296;
-    const ariane6_real_t t421 = t419 + (t420 * t386 - t416 * t387);
-    const ariane6_real_t t422 = t3 * t420 + t1 * t417;
+    const ariane6_real_t t420 = t6 * t415 + t8 * t296; /* link j6: column of the mass matrix */
+    const ariane6_real_t t421 = t419 + (t420 * t386 - t416 * t387); /* link j6: derivatives */
+    const ariane6_real_t t422 = t3 * t420 + t1 * t417; /* link j6: column of the mass matrix */
+    /* link j6: derivatives */
     const ariane6_real_t t423 = t3 * t421 - t1 * t418 + (t422 * t377 - t416 * t389);
-    const ariane6_real_t t424 = t1 * t420 - t3 * t417;
-    const ariane6_real_t t425 = t3 * t418 + t1 * t421 + t424 * t377;
+    const ariane6_real_t t424 = t1 * t420 - t3 * t417; /* link j6: column of the mass matrix */
+    const ariane6_real_t t425 = t3 * t418 + t1 * t421 + t424 * t377; /* link j6: derivatives */
     const ariane6_real_t t426 = t0 * t423 - t2 * t425 + (t2 * t424 - t0 * t422) * t373;
     input_by_dq[30] = ARIANE6_C(0.2) * t426;
+    /* link j6: inertia of it and all beyond */
     const ariane6_real_t t427 = t47 * parameters[XX6R] + parameters[XY6] * (ARIANE6_C(-2.0) * t30);
     const ariane6_real_t t428 = t47 * t427;
     const ariane6_real_t t429 = parameters[XX5R] + t428;
+    /* link j6: column of the mass matrix */
     const ariane6_real_t t430 = t30 * parameters[YZ6R] - t47 * parameters[XZ6R];
-    const ariane6_real_t t431 = parameters[XY5] - t430;
+    const ariane6_real_t t431 = parameters[XY5] - t430; /* link j6: inertia of it and all beyond */
+    /* link j5: inertia of it and all beyond */
     const ariane6_real_t t432 = t10 * (parameters[ZZ6] - t429) + t431 * (ARIANE6_C(2.0) * t14);
     const ariane6_real_t t433 = t10 * t432;
     const ariane6_real_t t434 = parameters[ZZ4R] + (t429 + t433);
-    const ariane6_real_t t435 = ARIANE6_C(0.34) * t300;
+    const ariane6_real_t t435 = ARIANE6_C(0.34) * t300; /* link j4: inertia of it and all beyond */
     const ariane6_real_t t436 = t434 + t435;
+    /* link j5: inertia of it and all beyond */
     const ariane6_real_t t437 = parameters[XX4R] + (parameters[ZZ6] - t433);
+    /* link j6: inertia of it and all beyond */
     const ariane6_real_t t438 = t428 - parameters[XX6R] - parameters[ZZ5R];
     const ariane6_real_t t439 = parameters[XY6] + t30 * t427 - parameters[XZ5];
+    /* link j6: column of the mass matrix */
     const ariane6_real_t t440 = t30 * parameters[XZ6R] + t47 * parameters[YZ6R];
-    const ariane6_real_t t441 = parameters[YZ5] - t440;
-    const ariane6_real_t t442 = t10 * t439 + t14 * t441;
-    const ariane6_real_t t443 = parameters[XY4] + t442;
+    const ariane6_real_t t441 = parameters[YZ5] - t440; /* link j6: inertia of it and all beyond */
+    const ariane6_real_t t442 = t10 * t439 + t14 * t441; /* link j5: column of the mass matrix */
+    const ariane6_real_t t443 = parameters[XY4] + t442; /* link j5: inertia of it and all beyond */
+    /* link j4: inertia of it and all beyond */
     const ariane6_real_t t444 = t443 * (ARIANE6_C(2.0) * t8) - t6 * (t438 + t437);
     const ariane6_real_t t445 = t6 * t444;
     const ariane6_real_t t446 = ARIANE6_C(0.976) * t308;
     const ariane6_real_t t447 = parameters[XX3R] + (t446 - (t438 + t445));
+    /* link j5: inertia of it and all beyond */
     const ariane6_real_t t448 = t14 * t432 - t431 - parameters[XZ4];
-    const ariane6_real_t t449 = t10 * t441 - t14 * t439;
-    const ariane6_real_t t450 = parameters[YZ4] - t449;
-    const ariane6_real_t t451 = t6 * t448 + t8 * t450;
+    const ariane6_real_t t449 = t10 * t441 - t14 * t439; /* link j5: column of the mass matrix */
+    const ariane6_real_t t450 = parameters[YZ4] - t449; /* link j5: inertia of it and all beyond */
+    const ariane6_real_t t451 = t6 * t448 + t8 * t450; /* link j4: column of the mass matrix */
     const ariane6_real_t t452 = ARIANE6_C(-0.488) * t300;
+    /* link j4: inertia of it and all beyond */
     const ariane6_real_t t453 = t451 + (t452 + ARIANE6_C(-0.17) * t308) - parameters[XY3R];
+    /* link j3: inertia of it and all beyond */
     const ariane6_real_t t454 = t1 * (t447 - t436) - t453 * (ARIANE6_C(-2.0) * t3);
     const ariane6_real_t t455 = t1 * t454;
     const ariane6_real_t t456 = ARIANE6_C(1.37) * t353;
     const ariane6_real_t t457 = t447 - t455 - t456;
     const ariane6_real_t t458 = parameters[XX2R] + (t436 + t455);
     const ariane6_real_t t459 = parameters[XY2] + (t3 * t454 - t453 + ARIANE6_C(0.685) * t338);
+    /* link j2: inertia of it and all beyond */
     const ariane6_real_t t460 = t2 * (t2 * (t457 - t458) + t459 * (ARIANE6_C(2.0) * t0));
     const ariane6_real_t t461 = t458 + t460 + ARIANE6_C(0.36) * (t0 * t371 + t2 * t372);
     input_by_ddq[0] = ARIANE6_C(250.0) * (t163 * parameters[IA1]) + t160 * (parameters[ZZ1R] + t461);
+    /* link j4: inertia of it and all beyond */
     const ariane6_real_t t462 = t443 - t8 * t444 + ARIANE6_C(0.17) * t305 - parameters[XZ3];
+    /* link j4: column of the mass matrix */
     const ariane6_real_t t463 = t8 * t448 - t6 * t450 + ARIANE6_C(0.488) * t305;
-    const ariane6_real_t t464 = parameters[YZ3] + t463;
-    const ariane6_real_t t465 = t1 * t462 + t3 * t464;
+    const ariane6_real_t t464 = parameters[YZ3] + t463; /* link j4: inertia of it and all beyond */
+    const ariane6_real_t t465 = t1 * t462 + t3 * t464; /* link j3: column of the mass matrix */
+    /* link j3: inertia of it and all beyond */
     const ariane6_real_t t466 = parameters[XZ2R] + (ARIANE6_C(0.685) * t305 - t465);
-    const ariane6_real_t t467 = t3 * t462 - t1 * t464;
-    const ariane6_real_t t468 = t467 - parameters[YZ2];
-    const ariane6_real_t t469 = t0 * t466 - t2 * t468;
+    const ariane6_real_t t467 = t3 * t462 - t1 * t464; /* link j3: column of the mass matrix */
+    const ariane6_real_t t468 = t467 - parameters[YZ2]; /* link j3: inertia of it and all beyond */
+    const ariane6_real_t t469 = t0 * t466 - t2 * t468; /* link j2: column of the mass matrix */
     input_by_ddq[6] = t185 * t469;
-    const ariane6_real_t t470 = t0 * t465 + t2 * t467;
+    const ariane6_real_t t470 = t0 * t465 + t2 * t467; /* link j3: column of the mass matrix */
     input_by_ddq[12] = -(t199 * t470);
-    const ariane6_real_t t471 = t451 + t452;
+    const ariane6_real_t t471 = t451 + t452; /* link j4: column of the mass matrix */
     const ariane6_real_t t472 = ARIANE6_C(-0.17) * t300 - t434;
     const ariane6_real_t t473 = t3 * t472 - t1 * t471;
     const ariane6_real_t t474 = t3 * t471 + t1 * t472 + ARIANE6_C(0.685) * t300;
     const ariane6_real_t t475 = t0 * t473 - t2 * t474 + ARIANE6_C(-0.18) * t300;
     input_by_ddq[18] = ARIANE6_C(0.2) * t475;
+    /* link j5: column of the mass matrix */
     const ariane6_real_t t476 = t6 * t442 + t8 * t438 + ARIANE6_C(-0.488) * t399;
     const ariane6_real_t t477 = ARIANE6_C(-0.17) * t399 - t449;
     const ariane6_real_t t478 = t3 * t477 - t1 * t476;
     const ariane6_real_t t479 = t3 * t476 + t1 * t477 + ARIANE6_C(0.685) * t399;
     const ariane6_real_t t480 = t0 * t478 - t2 * t479 + ARIANE6_C(-0.18) * t399;
     input_by_ddq[24] = t214 * t480;
-    const ariane6_real_t t481 = t10 * t430 + t14 * parameters[ZZ6];
+    const ariane6_real_t t481 = t10 * t430 + t14 * parameters[ZZ6]; /* link j6: column of the mass matrix */
     const ariane6_real_t t482 = t6 * t481 + t8 * t440 + ARIANE6_C(0.488) * t416;
     const ariane6_real_t t483 = t14 * t430 - t10 * parameters[ZZ6];
     const ariane6_real_t t484 = t483 + ARIANE6_C(0.17) * t416;
@@ -673,9 +754,10 @@ int ariane6_inverse_dynamics_derivatives(
     const ariane6_real_t t486 = t3 * t482 + t1 * t484 + ARIANE6_C(-0.685) * t416;
     const ariane6_real_t t487 = t0 * t485 - t2 * t486 + ARIANE6_C(0.18) * t416;
     input_by_ddq[30] = ARIANE6_C(0.2) * t487;
-    const ariane6_real_t t488 = ARIANE6_C(2.0) * t69;
+    const ariane6_real_t t488 = ARIANE6_C(2.0) * t69; /* link j2: derivatives */
     const ariane6_real_t t489 = ARIANE6_C(-2.0) * t74;
-    const ariane6_real_t t490 = t153 + t70;
+    const ariane6_real_t t490 = t153 + t70; /* link j3: motion */
+    /* link j2: derivatives */
     const ariane6_real_t t491 = t346 * t488 + t351 * t489 + (t458 * t85 - t459 * t146 - t466 * t490);
     const ariane6_real_t t492 = t355 * t488 + t348 * t489 + (t459 * t85 - t457 * t146 + t468 * t490);
     const ariane6_real_t t493 = t0 * (t154 + (t491 - t305 * t68)) + t2 * (t149 + (t492 + t305 * t73));
@@ -687,8 +769,10 @@ int ariane6_inverse_dynamics_derivatives(
     const ariane6_real_t t498 = ARIANE6_C(1.0) / t184;
     const ariane6_real_t t499 = t498 * (ARIANE6_C(0.019697757607273984) * (t497 * (ARIANE6_C(0.5) * t496))
         + t182 * t185);
+    /* link j4: inertia of it and all beyond */
     const ariane6_real_t t500 = parameters[ZZ3R] + (t437 + t445 + (t435 + t446));
-    const ariane6_real_t t501 = parameters[ZZ2R] + (t500 - t456);
+    const ariane6_real_t t501 = parameters[ZZ2R] + (t500 - t456); /* link j3: inertia of it and all beyond */
+    /* link j2: derivatives */
     const ariane6_real_t t502 = t466 * t85 + t468 * t146 - t501 * t490 + (t69 * t368 + t74 * t370);
     const ariane6_real_t t503 = t186 * (t186 * (t497 * (ARIANE6_C(0.5) * t186)));
     const ariane6_real_t t504 = t192 * (ARIANE6_C(1610.8178724000004) * (t186 * t503))
@@ -698,45 +782,60 @@ int ariane6_inverse_dynamics_derivatives(
     const ariane6_real_t t507 = parameters[FV2] * (dq[1] * t506) + parameters[IA2] * (t505 + ddq[1] * t506);
     const ariane6_real_t t508 = ARIANE6_C(250.0) * t507 + t185 * (t502 - (t372 * t68 + t371 * t73));
     input_by_q[7] = t508 + t181 * t499;
-    const ariane6_real_t t509 = t500 + ARIANE6_C(-0.685) * t353;
+    const ariane6_real_t t509 = t500 + ARIANE6_C(-0.685) * t353; /* link j3: column of the mass matrix */
+    /* link j3: derivatives */
     const ariane6_real_t t510 = t69 * t378 - t74 * t379 + (t467 * t146 - t465 * t85 - t509 * t490);
     input_by_q[13] = t199 * (t510 + (t353 * t68 - t338 * t73));
-    const ariane6_real_t t511 = t463 + ARIANE6_C(-0.685) * t390;
+    const ariane6_real_t t511 = t463 + ARIANE6_C(-0.685) * t390; /* link j4: column of the mass matrix */
+    /* link j4: derivatives */
     const ariane6_real_t t512 = t69 * t391 + t74 * t393 + (t473 * t85 + t474 * t146 - t511 * t490);
     input_by_q[19] = ARIANE6_C(0.2) * (t512 + (t392 * t73 + t390 * t68));
+    /* link j5: column of the mass matrix */
     const ariane6_real_t t513 = t8 * t442 - t6 * t438 + (ARIANE6_C(-0.17) * t298 + ARIANE6_C(0.488) * t402);
     const ariane6_real_t t514 = t513 + ARIANE6_C(0.685) * t404;
+    /* link j5: derivatives */
     const ariane6_real_t t515 = t69 * t405 + t74 * t407 + (t478 * t85 + t479 * t146 - t514 * t490);
     input_by_q[25] = t214 * (t515 + (t406 * t73 - t404 * t68));
+    /* link j6: column of the mass matrix */
     const ariane6_real_t t516 = t8 * t481 - t6 * t440 + (ARIANE6_C(0.17) * t417 + ARIANE6_C(0.488) * t420);
     const ariane6_real_t t517 = t516 + ARIANE6_C(-0.685) * t422;
+    /* link j6: derivatives */
     const ariane6_real_t t518 = t69 * t423 + t74 * t425 + (t485 * t85 + t486 * t146 - t517 * t490);
     input_by_q[31] = ARIANE6_C(0.2) * (t518 + (t424 * t73 + t422 * t68));
     const ariane6_real_t t519 = t323 - parameters[ZZ3R];
+    /* link j4: inertia, momentum beyond */
     const ariane6_real_t t520 = t277 + t361 + t305 * t301 - (parameters[YZ3] * t7 + t12 * t519);
     const ariane6_real_t t521 = parameters[XZ3] * t7 + t5 * t519 + (t8 * t325 - t6 * t326 + t305 * t309);
     const ariane6_real_t t522 = parameters[ZZ2R] - t350;
+    /* link j3: inertia, momentum beyond */
     const ariane6_real_t t523 = t69 * t522 - parameters[YZ2] * dq[1] + (t1 * t520 - t3 * t521);
+    /* link j2: derivatives */
     const ariane6_real_t t524 = t0 * (ARIANE6_C(2.0) * t523 + (t458 * t488 + t459 * t489));
+    /* link j3: inertia, momentum beyond */
     const ariane6_real_t t525 = parameters[XZ2R] * dq[1] - t74 * t522 + (t3 * t520 + t1 * t521 + t305 * t339);
+    /* link j2: derivatives */
     const ariane6_real_t t526 = t2 * (ARIANE6_C(2.0) * t525 + (t459 * t488 + t457 * t489));
     const ariane6_real_t t527 = t524 + t526 + ARIANE6_C(0.18) * (t371 * t488 + t372 * t489);
     input_by_dq[1] = t160 * t527;
+    /* link j4: inertia, momentum beyond */
     const ariane6_real_t t528 = t316 - t312 + (t311 + (t283 - t268 + t307));
+    /* link j2: derivatives */
     const ariane6_real_t t529 = ARIANE6_C(2.0) * (t347 - t344 + (t528 + t342 - t343))
         + ARIANE6_C(2.0) * (t466 * t69 + t468 * t74);
     const ariane6_real_t t530 = ARIANE6_C(250.0) * (t188 * parameters[FV2]
         - parameters[IA2] * (t194 * (ARIANE6_C(2.0) * dq[1])));
     input_by_dq[7] = t530 + t185 * t529;
-    const ariane6_real_t t531 = ARIANE6_C(2.0) * t528;
+    const ariane6_real_t t531 = ARIANE6_C(2.0) * t528; /* link j3: derivatives */
     const ariane6_real_t t532 = t531 - t338 * t389 + ARIANE6_C(2.0) * (t467 * t74 - t465 * t69);
     input_by_dq[13] = t199 * t532;
-    const ariane6_real_t t533 = t8 * t381 - t6 * t382 + t305 * t383;
+    const ariane6_real_t t533 = t8 * t381 - t6 * t382 + t305 * t383; /* link j4: derivatives */
     const ariane6_real_t t534 = t533 + t392 * t389 + ARIANE6_C(2.0) * (t473 * t69 + t474 * t74);
     input_by_dq[19] = ARIANE6_C(0.2) * t534;
+    /* link j5: derivatives */
     const ariane6_real_t t535 = t8 * t397 + t6 * t398 + (t298 * t387 + t402 * t383);
     const ariane6_real_t t536 = t535 + t406 * t389 + ARIANE6_C(2.0) * (t478 * t69 + t479 * t74);
     input_by_dq[25] = t214 * t536;
+    /* link j6: derivatives */
     const ariane6_real_t t537 = t8 * t413 + t6 * t414 + (t420 * t383 - t417 * t387);
     const ariane6_real_t t538 = t537 + t424 * t389 + ARIANE6_C(2.0) * (t485 * t69 + t486 * t74);
     input_by_dq[31] = ARIANE6_C(0.2) * t538;
@@ -746,14 +845,15 @@ int ariane6_inverse_dynamics_derivatives(
     input_by_ddq[19] = ARIANE6_C(0.2) * t511;
     input_by_ddq[25] = t214 * t514;
     input_by_ddq[31] = ARIANE6_C(0.2) * t517;
-    const ariane6_real_t t539 = ARIANE6_C(-2.0) * t12;
+    const ariane6_real_t t539 = ARIANE6_C(-2.0) * t12; /* link j3: derivatives */
     const ariane6_real_t t540 = ARIANE6_C(2.0) * t5;
-    const ariane6_real_t t541 = t92 + t79;
+    const ariane6_real_t t541 = t92 + t79; /* link j4: motion */
+    /* link j3: derivatives */
     const ariane6_real_t t542 = t324 * t540 - t314 * t539 + (t447 * t34 + t453 * t22 + t462 * t541);
     const ariane6_real_t t543 = t144 + (t542 - t305 * t78);
     const ariane6_real_t t544 = t329 * t539 + t317 * t540 + (t453 * t34 + t436 * t22 + t464 * t541);
-    const ariane6_real_t t545 = t305 * t91;
-    const ariane6_real_t t546 = t139 + (t544 - t545);
+    const ariane6_real_t t545 = t305 * t91; /* link j4: derivatives */
+    const ariane6_real_t t546 = t139 + (t544 - t545); /* link j3: derivatives */
     const ariane6_real_t t547 = t333 * t539 + t332 * t540 + (t336 * t22 - t337 * t34);
     const ariane6_real_t t548 = t2 * (t3 * t543 - t1 * t546 + ARIANE6_C(0.685) * t547);
     const ariane6_real_t t549 = t0 * (t1 * t543 + t3 * t546) + t548 + ARIANE6_C(0.18) * t547;
@@ -779,12 +879,16 @@ int ariane6_inverse_dynamics_derivatives(
     const ariane6_real_t t564 = t198 * (ARIANE6_C(8377.600000000002) * t561) - t196 * t201;
     const ariane6_real_t t565 = parameters[FV3] * (dq[2] * t564) + parameters[IA3] * (t563 + ddq[2] * t564);
     input_by_q[14] = ARIANE6_C(250.0) * t565 + t560 + t176 * t559;
+    /* link j4: derivatives */
     const ariane6_real_t t566 = t5 * t388 - t12 * t384 + (t472 * t22 - t471 * t34 - t463 * t541);
     input_by_q[20] = ARIANE6_C(0.2) * (t566 + t545);
+    /* link j5: derivatives */
     const ariane6_real_t t567 = t5 * t403 - t12 * t400 + (t477 * t22 - t476 * t34 - t513 * t541);
     input_by_q[26] = t214 * (t567 + (t402 * t91 - t298 * t78));
+    /* link j6: derivatives */
     const ariane6_real_t t568 = t5 * t421 - t12 * t418 + (t484 * t22 - t482 * t34 - t516 * t541);
     input_by_q[32] = ARIANE6_C(0.2) * (t568 + (t420 * t91 + t417 * t78));
+    /* link j3: derivatives */
     const ariane6_real_t t569 = ARIANE6_C(2.0) * t520 + (t453 * t540 - t447 * t539);
     const ariane6_real_t t570 = ARIANE6_C(2.0) * t521 - (t436 * t540 - t453 * t539);
     const ariane6_real_t t571 = t337 * t539 + t336 * t540;
@@ -811,13 +915,14 @@ int ariane6_inverse_dynamics_derivatives(
     input_by_ddq[20] = ARIANE6_C(0.2) * t463;
     input_by_ddq[26] = t214 * t513;
     input_by_ddq[32] = ARIANE6_C(0.2) * t516;
-    const ariane6_real_t t581 = ARIANE6_C(2.0) * t31;
+    const ariane6_real_t t581 = ARIANE6_C(2.0) * t31; /* link j4: derivatives */
     const ariane6_real_t t582 = ARIANE6_C(-2.0) * t9;
-    const ariane6_real_t t583 = t438 * t38;
-    const ariane6_real_t t584 = t128 + t121;
+    const ariane6_real_t t583 = t438 * t38; /* link j5: derivatives */
+    const ariane6_real_t t584 = t128 + t121; /* link j5: motion */
+    /* link j4: derivatives */
     const ariane6_real_t t585 = t281 * t581 + t271 * t582 + (t443 * t25 - t583 + t450 * t584);
-    const ariane6_real_t t586 = t308 * t108;
-    const ariane6_real_t t587 = t123 + (t586 + t585);
+    const ariane6_real_t t586 = t308 * t108; /* link j5: derivatives */
+    const ariane6_real_t t587 = t123 + (t586 + t585); /* link j4: derivatives */
     const ariane6_real_t t588 = t268 * t581 + t277 * t582 - (t437 * t25 + t443 * t38 - t448 * t584);
     const ariane6_real_t t589 = t129 + (t588 + t308 * t90);
     const ariane6_real_t t590 = t134 + (t303 * t581 + (t308 * t25 - t299 * t584));
@@ -838,10 +943,13 @@ int ariane6_inverse_dynamics_derivatives(
     input_by_q[15] = t199 * t601;
     const ariane6_real_t t603 = ARIANE6_C(0.2) * (t595 + (t594 + (t31 * t381 + t9 * t382)));
     input_by_q[21] = t603;
+    /* link j5: derivatives */
     const ariane6_real_t t604 = t31 * t397 - t9 * t398 + (t442 * t25 - t583 - t449 * t584);
     input_by_q[27] = t214 * (t604 + t586);
+    /* link j6: derivatives */
     const ariane6_real_t t605 = t31 * t413 - t9 * t414 + (t481 * t25 - t440 * t38 + t483 * t584);
     input_by_q[33] = ARIANE6_C(0.2) * (t605 + (t415 * t108 - t296 * t90));
+    /* link j4: derivatives */
     const ariane6_real_t t606 = ARIANE6_C(2.0) * t320 + (t437 * t581 + t443 * t582);
     const ariane6_real_t t607 = ARIANE6_C(-2.0) * t321 + (t443 * t581 - t438 * t582);
     const ariane6_real_t t608 = ARIANE6_C(-2.0) * t291 - t308 * t582;
@@ -871,13 +979,15 @@ int ariane6_inverse_dynamics_derivatives(
     input_by_ddq[27] = t214 * t449;
     const ariane6_real_t t622 = ARIANE6_C(-0.2) * t483;
     input_by_ddq[33] = t622;
-    const ariane6_real_t t623 = ARIANE6_C(2.0) * t16;
+    const ariane6_real_t t623 = ARIANE6_C(2.0) * t16; /* link j5: derivatives */
     const ariane6_real_t t624 = ARIANE6_C(2.0) * t15;
-    const ariane6_real_t t625 = t116 + t106;
+    const ariane6_real_t t625 = t116 + t106; /* link j6: motion */
+    /* link j5: derivatives */
     const ariane6_real_t t626 = t259 * t624 - t251 * t623 + (t429 * t57 + t431 * t42 + t439 * t625);
     const ariane6_real_t t627 = t117 + (t626 + t294 * t111);
-    const ariane6_real_t t628 = t294 * t96;
+    const ariane6_real_t t628 = t294 * t96; /* link j6: derivatives */
     const ariane6_real_t t629 = parameters[ZZ6] * t42;
+    /* link j5: derivatives */
     const ariane6_real_t t630 = t263 * t623 + t254 * t624 + (t629 + t431 * t57 - t441 * t625);
     const ariane6_real_t t631 = t109 + (t628 + t630);
     const ariane6_real_t t632 = t10 * t627 - t14 * t631;
@@ -916,8 +1026,10 @@ int ariane6_inverse_dynamics_derivatives(
     const ariane6_real_t t660 = t659 * (ARIANE6_C(0.07043047103899029) * (t651 * (ARIANE6_C(0.5) * t658))
         + t14 * t214);
     input_by_q[28] = ARIANE6_C(250.0) * t656 + t650 + t126 * t660;
+    /* link j6: derivatives */
     const ariane6_real_t t661 = t15 * t412 - t16 * t411 + (t629 - t430 * t57 + t440 * t625);
     input_by_q[34] = ARIANE6_C(0.2) * (t661 + t628);
+    /* link j5: derivatives */
     const ariane6_real_t t662 = ARIANE6_C(2.0) * t274 + (t429 * t623 + t431 * t624);
     const ariane6_real_t t663 = ARIANE6_C(2.0) * t275 + (t431 * t623 + parameters[ZZ6] * t624);
     const ariane6_real_t t664 = t10 * t662 - t14 * t663;
@@ -953,8 +1065,8 @@ int ariane6_inverse_dynamics_derivatives(
     input_by_ddq[22] = ARIANE6_C(0.2) * t449;
     input_by_ddq[28] = ARIANE6_C(250.0) * (t217 * parameters[IA5]) - t214 * t438;
     input_by_ddq[34] = ARIANE6_C(-0.2) * t440;
-    const ariane6_real_t t683 = t101 + t64;
-    const ariane6_real_t t684 = ARIANE6_C(-2.0) * t49;
+    const ariane6_real_t t683 = t101 + t64; /* link j6: force and moment */
+    const ariane6_real_t t684 = ARIANE6_C(-2.0) * t49; /* link j6: derivatives */
     const ariane6_real_t t685 = ARIANE6_C(2.0) * t54;
     const ariane6_real_t t686 = t246 * t685 - t240 * t684 - (parameters[XX6R] * t53 - parameters[XY6] * t48
         + parameters[XZ6R] * t683);

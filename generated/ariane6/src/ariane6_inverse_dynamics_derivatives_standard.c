@@ -7,16 +7,16 @@
  * Arm ariane6, description ac2a59ce556c2f1c.
  * SPDX-License-Identifier: 0BSD
  *
- * Operations: 2954 (1696 mul, 1254 add, 4 neg), 16 div, 4 sqrt, 12 trig, 10 other.
+ * Operations: 2954 (1696 mul, 1254 add, 4 neg), 16 div, 4 sqrt, 12 trig, 10 other calls (sign, select and the like).
  *
- * @param[in]   q             [6]   [rad]                joint coordinates; norm at most 10000
- * @param[in]   dq            [6]   [rad/s]              joint velocities; norm at most 100000
- * @param[in]   ddq           [6]   [rad/s^2]            joint accelerations; norm at most 1e+08
- * @param[in]   parameters    [78]                       standard parameters; norm at most 1e+09
- * @param[out]  input         [6]   [A]                  inputs: motor currents, efforts where undriven
- * @param[out]  input_by_q    [36]  [(A) per (rad)]      d input / d q; 6 x 6, row-major
- * @param[out]  input_by_dq   [36]  [(A) per (rad/s)]    d input / d dq; 6 x 6, row-major
- * @param[out]  input_by_ddq  [36]  [(A) per (rad/s^2)]  d input / d ddq; 6 x 6, row-major
+ * @param[in]   q             [6]   [rad]              joint coordinates; norm at most 10000
+ * @param[in]   dq            [6]   [rad/s]            joint velocities; norm at most 100000
+ * @param[in]   ddq           [6]   [rad/s^2]          joint accelerations; norm at most 1e+08
+ * @param[in]   parameters    [78]                     standard parameters; norm at most 1e+09
+ * @param[out]  input         [6]   [A]                inputs: motor currents, efforts where undriven
+ * @param[out]  input_by_q    [36]  [A per rad]        d input / d q; 6 x 6, row-major
+ * @param[out]  input_by_dq   [36]  [A per (rad/s)]    d input / d dq; 6 x 6, row-major
+ * @param[out]  input_by_ddq  [36]  [A per (rad/s^2)]  d input / d ddq; 6 x 6, row-major
  *
  * Coordinates:
  *
@@ -110,11 +110,11 @@
  */
 #include "ariane6_private.h"
 
-#if ARIANE6_GENERATION != 0xBA206C14UL
+#if ARIANE6_GENERATION != 0x13CD28B3UL
 #error "ariane6.h and ariane6_inverse_dynamics_derivatives_standard.c are of different generations: generate the arm again"
 #endif
 
-int ariane6_inverse_dynamics_derivatives_standard(
+ariane6_status_t ariane6_inverse_dynamics_derivatives_standard(
     const ariane6_real_t q[ARIANE6_N_JOINTS],
     const ariane6_real_t dq[ARIANE6_N_JOINTS],
     const ariane6_real_t ddq[ARIANE6_N_JOINTS],
@@ -128,7 +128,7 @@ int ariane6_inverse_dynamics_derivatives_standard(
         M2, XX3, XY3, XZ3, YY3, YZ3, ZZ3, MX3, MY3, MZ3, M3, XX4, XY4, XZ4, YY4, YZ4, ZZ4, MX4, MY4, MZ4, M4,
         XX5, XY5, XZ5, YY5, YZ5, ZZ5, MX5, MY5, MZ5, M5, XX6, XY6, XZ6, YY6, YZ6, ZZ6, MX6, MY6, MZ6, M6, FV1,
         FC1, IA1, FV2, FC2, IA2, FV3, FC3, IA3, FV4, FC4, IA4, FV5, FC5, IA5, FV6, FC6, IA6 };
-    int status = ARIANE6_STATUS_OK;
+    ariane6_status_t status = ARIANE6_STATUS_OK;
 
     if (!ariane6_within_joints(q, ARIANE6_C(1.0e8))
         || !ariane6_within_joints(dq, ARIANE6_C(1.0e10))
@@ -162,44 +162,44 @@ int ariane6_inverse_dynamics_derivatives_standard(
     ARIANE6_SINCOS(q[4], &t25, &t24);
     ariane6_real_t t30, t47;
     ARIANE6_SINCOS(q[5], &t30, &t47);
-    const ariane6_real_t t4 = t0 * t1 + t2 * t3;
+    const ariane6_real_t t4 = t0 * t1 + t2 * t3; /* link j3: motion */
     const ariane6_real_t t5 = dq[0] * t4;
     const ariane6_real_t t6 = t2 * t1 - t0 * t3;
     const ariane6_real_t t7 = dq[0] * t6;
     const ariane6_real_t t8 = t5 * t7;
     const ariane6_real_t t9 = ddq[1] + ddq[2];
-    const ariane6_real_t t10 = t8 - t9;
-    const ariane6_real_t t12 = ddq[0] * t4;
+    const ariane6_real_t t10 = t8 - t9; /* link j4: motion */
+    const ariane6_real_t t12 = ddq[0] * t4; /* link j3: motion */
     const ariane6_real_t t13 = dq[1] + dq[2];
     const ariane6_real_t t14 = t7 * t13;
     const ariane6_real_t t15 = t12 + t14;
-    const ariane6_real_t t16 = t14 + t15;
+    const ariane6_real_t t16 = t14 + t15; /* link j4: motion */
     const ariane6_real_t t18 = t17 * t16 - t11 * t10;
     const ariane6_real_t t19 = t17 * t13 - t11 * t5;
     const ariane6_real_t t20 = dq[3] + t7;
     const ariane6_real_t t21 = t19 * t20;
     const ariane6_real_t t22 = t18 - t21;
-    const ariane6_real_t t23 = ddq[4] + t22;
+    const ariane6_real_t t23 = ddq[4] + t22; /* link j5: motion */
     const ariane6_real_t t26 = t24 * t19 - t25 * t20;
     const ariane6_real_t t27 = t25 * t19 + t24 * t20;
     const ariane6_real_t t28 = t26 * t27;
-    const ariane6_real_t t29 = t23 + t28;
-    const ariane6_real_t t31 = ddq[0] * t6;
+    const ariane6_real_t t29 = t23 + t28; /* link j6: motion */
+    const ariane6_real_t t31 = ddq[0] * t6; /* link j3: motion */
     const ariane6_real_t t32 = t5 * t13;
     const ariane6_real_t t33 = t32 - t31;
-    const ariane6_real_t t34 = t33 - ddq[3];
+    const ariane6_real_t t34 = t33 - ddq[3]; /* link j4: motion */
     const ariane6_real_t t35 = t17 * t5 + t11 * t13;
     const ariane6_real_t t36 = t19 * t35;
-    const ariane6_real_t t37 = t34 + t36;
-    const ariane6_real_t t38 = t17 * t10 + t11 * t16;
+    const ariane6_real_t t37 = t34 + t36; /* link j5: motion */
+    const ariane6_real_t t38 = t17 * t10 + t11 * t16; /* link j4: motion */
     const ariane6_real_t t39 = t35 * t20;
     const ariane6_real_t t40 = t39 - t38;
-    const ariane6_real_t t41 = t39 + t40;
+    const ariane6_real_t t41 = t39 + t40; /* link j5: motion */
     const ariane6_real_t t42 = t25 * t37 + t24 * t41;
     const ariane6_real_t t43 = dq[4] + t35;
     const ariane6_real_t t44 = t27 * t43;
     const ariane6_real_t t45 = t44 - t42;
-    const ariane6_real_t t46 = t44 + t45;
+    const ariane6_real_t t46 = t44 + t45; /* link j6: motion */
     const ariane6_real_t t48 = t30 * t29 - t47 * t46;
     const ariane6_real_t t49 = t47 * t43 - t30 * t26;
     const ariane6_real_t t50 = dq[5] + t27;
@@ -209,68 +209,71 @@ int ariane6_inverse_dynamics_derivatives_standard(
     const ariane6_real_t t54 = t47 * t26 + t30 * t43;
     const ariane6_real_t t55 = t54 * t50;
     const ariane6_real_t t56 = t53 - t55;
-    const ariane6_real_t t57 = t56 - t55;
+    const ariane6_real_t t57 = t56 - t55; /* link j6: columns */
+    /* link j6: force and moment */
     const ariane6_real_t t58 = t51 * (parameters[ZZ6] - parameters[YY6]) + t52 * parameters[XX6]
         + t57 * parameters[XY6];
-    const ariane6_real_t t59 = t25 * t41 - t24 * t37;
+    const ariane6_real_t t59 = t25 * t41 - t24 * t37; /* link j5: motion */
     const ariane6_real_t t60 = t26 * t43;
     const ariane6_real_t t61 = t59 + t60;
-    const ariane6_real_t t62 = ddq[5] + t61;
+    const ariane6_real_t t62 = ddq[5] + t61; /* link j6: motion */
     const ariane6_real_t t63 = t54 * t49;
-    const ariane6_real_t t64 = t62 + t63;
-    const ariane6_real_t t65 = t49 * t49;
+    const ariane6_real_t t64 = t62 + t63; /* link j6: columns */
+    const ariane6_real_t t65 = t49 * t49; /* link j6: motion */
     const ariane6_real_t t66 = t50 * t50;
-    const ariane6_real_t t67 = dq[0] * dq[0];
-    const ariane6_real_t t68 = ARIANE6_C(-0.18) * t67;
+    const ariane6_real_t t67 = dq[0] * dq[0]; /* link j1: motion */
+    const ariane6_real_t t68 = ARIANE6_C(-0.18) * t67; /* link j2: motion */
     const ariane6_real_t t69 = t2 * t68 + ARIANE6_C(9.81) * t0;
     const ariane6_real_t t70 = t2 * dq[0];
     const ariane6_real_t t71 = t70 * t70;
     const ariane6_real_t t72 = dq[1] * dq[1];
-    const ariane6_real_t t73 = t69 + ARIANE6_C(-0.685) * (t71 + t72);
-    const ariane6_real_t t74 = t0 * t68 + ARIANE6_C(-9.81) * t2;
+    const ariane6_real_t t73 = t69 + ARIANE6_C(-0.685) * (t71 + t72); /* link j3: motion */
+    const ariane6_real_t t74 = t0 * t68 + ARIANE6_C(-9.81) * t2; /* link j2: motion */
     const ariane6_real_t t75 = t0 * dq[0];
     const ariane6_real_t t76 = t75 * t70;
-    const ariane6_real_t t77 = ddq[1] + t76;
+    const ariane6_real_t t77 = ddq[1] + t76; /* link j3: motion */
     const ariane6_real_t t78 = ARIANE6_C(0.685) * t77 - t74;
     const ariane6_real_t t79 = t1 * t73 + t3 * t78;
     const ariane6_real_t t80 = t7 * t7;
     const ariane6_real_t t81 = t13 * t13;
-    const ariane6_real_t t82 = t80 + t81;
+    const ariane6_real_t t82 = t80 + t81; /* link j4: motion */
     const ariane6_real_t t83 = t79 + (ARIANE6_C(0.17) * t82 + ARIANE6_C(0.488) * t10);
     const ariane6_real_t t84 = t32 + t33;
-    const ariane6_real_t t85 = t2 * ddq[0];
+    const ariane6_real_t t85 = t2 * ddq[0]; /* link j2: motion */
     const ariane6_real_t t86 = dq[1] * t75;
     const ariane6_real_t t87 = t85 - t86;
-    const ariane6_real_t t88 = t87 - t86;
-    const ariane6_real_t t89 = ARIANE6_C(-0.18) * ddq[0];
-    const ariane6_real_t t90 = t89 + ARIANE6_C(-0.685) * t88;
-    const ariane6_real_t t91 = t90 + (ARIANE6_C(-0.17) * t84 + ARIANE6_C(0.488) * t16);
+    const ariane6_real_t t88 = t87 - t86; /* link j3: motion */
+    const ariane6_real_t t89 = ARIANE6_C(-0.18) * ddq[0]; /* link j2: motion */
+    const ariane6_real_t t90 = t89 + ARIANE6_C(-0.685) * t88; /* link j3: motion */
+    const ariane6_real_t t91 = t90 + (ARIANE6_C(-0.17) * t84 + ARIANE6_C(0.488) * t16); /* link j4: motion */
     const ariane6_real_t t92 = t17 * t91 - t11 * t83;
-    const ariane6_real_t t93 = t3 * t73 - t1 * t78;
-    const ariane6_real_t t94 = t9 + t8;
-    const ariane6_real_t t95 = t5 * t5;
-    const ariane6_real_t t96 = t95 + t81;
+    const ariane6_real_t t93 = t3 * t73 - t1 * t78; /* link j3: motion */
+    const ariane6_real_t t94 = t9 + t8; /* link j4: motion */
+    const ariane6_real_t t95 = t5 * t5; /* link j3: motion */
+    const ariane6_real_t t96 = t95 + t81; /* link j4: motion */
     const ariane6_real_t t97 = t93 + (ARIANE6_C(0.17) * t94 + ARIANE6_C(0.488) * t96);
-    const ariane6_real_t t98 = t24 * t92 + t25 * t97;
-    const ariane6_real_t t99 = t98 + ARIANE6_C(0.3) * t29;
-    const ariane6_real_t t100 = t17 * t83 + t11 * t91;
-    const ariane6_real_t t101 = t100 + ARIANE6_C(0.3) * t46;
+    const ariane6_real_t t98 = t24 * t92 + t25 * t97; /* link j5: motion */
+    const ariane6_real_t t99 = t98 + ARIANE6_C(0.3) * t29; /* link j6: motion */
+    const ariane6_real_t t100 = t17 * t83 + t11 * t91; /* link j4: motion */
+    const ariane6_real_t t101 = t100 + ARIANE6_C(0.3) * t46; /* link j6: motion */
     const ariane6_real_t t102 = t47 * t101 - t30 * t99;
-    const ariane6_real_t t103 = t102 * parameters[MZ6];
-    const ariane6_real_t t104 = t24 * t97 - t25 * t92;
+    const ariane6_real_t t103 = t102 * parameters[MZ6]; /* link j6: force and moment */
+    const ariane6_real_t t104 = t24 * t97 - t25 * t92; /* link j5: motion */
     const ariane6_real_t t105 = t26 * t26;
     const ariane6_real_t t106 = t43 * t43;
-    const ariane6_real_t t107 = t105 + t106;
+    const ariane6_real_t t107 = t105 + t106; /* link j6: motion */
     const ariane6_real_t t108 = t104 + ARIANE6_C(0.3) * t107;
+    /* link j6: force and moment */
     const ariane6_real_t t109 = (t66 - t65) * parameters[YZ6] + (t58 - t64 * parameters[XZ6])
         + (t108 * parameters[MY6] - t103);
-    const ariane6_real_t t110 = t51 + t52;
+    const ariane6_real_t t110 = t51 + t52; /* link j6: columns */
+    /* link j6: force and moment */
     const ariane6_real_t t111 = t56 * parameters[YY6] - t55 * (parameters[ZZ6] - parameters[XX6])
         + t110 * parameters[XY6];
-    const ariane6_real_t t112 = t62 - t63;
-    const ariane6_real_t t113 = t54 * t54;
+    const ariane6_real_t t112 = t62 - t63; /* link j6: columns */
+    const ariane6_real_t t113 = t54 * t54; /* link j6: motion */
     const ariane6_real_t t114 = t47 * t99 + t30 * t101;
-    const ariane6_real_t t115 = t114 * parameters[MZ6];
+    const ariane6_real_t t115 = t114 * parameters[MZ6]; /* link j6: force and moment */
     const ariane6_real_t t116 = (t113 - t66) * parameters[XZ6] + (t111 - t112 * parameters[YZ6]) + (t115
         - t108 * parameters[MX6]);
     const ariane6_real_t t117 = t114 * parameters[M6];
@@ -279,140 +282,178 @@ int ariane6_inverse_dynamics_derivatives_standard(
     const ariane6_real_t t120 = t102 * parameters[M6];
     const ariane6_real_t t121 = t48 * parameters[MZ6];
     const ariane6_real_t t122 = t120 + ((t113 + t66) * parameters[MY6] - t64 * parameters[MX6] - t121);
-    const ariane6_real_t t123 = t30 * t119 + t47 * t122;
-    const ariane6_real_t t124 = t60 + t61;
+    const ariane6_real_t t123 = t30 * t119 + t47 * t122; /* link j6: what it passes on */
+    const ariane6_real_t t124 = t60 + t61; /* link j6: motion */
+    /* link j5: force and moment */
     const ariane6_real_t t125 = t45 * parameters[XX5] - t44 * (parameters[YY5] - parameters[ZZ5])
         + t124 * parameters[XY5];
-    const ariane6_real_t t126 = t28 - t23;
-    const ariane6_real_t t127 = t27 * t27;
+    const ariane6_real_t t126 = t28 - t23; /* link j6: motion */
+    const ariane6_real_t t127 = t27 * t27; /* link j5: motion */
+    /* link j5: force and moment */
     const ariane6_real_t t128 = (t127 - t106) * parameters[YZ5] + (t125 - t126 * parameters[XZ5])
         + (t100 * parameters[MY5] + t104 * parameters[MZ5]);
+    /* link j6: what it passes on */
     const ariane6_real_t t129 = t128 + (t30 * t116 - t47 * t109 + ARIANE6_C(0.3) * t123);
-    const ariane6_real_t t130 = parameters[YY6] - parameters[XX6];
+    const ariane6_real_t t130 = parameters[YY6] - parameters[XX6]; /* link j6: inertia of it and all beyond */
+    /* link j6: force and moment */
     const ariane6_real_t t131 = t53 * parameters[YZ6] - (t63 * t130 + t62 * parameters[ZZ6])
         + t48 * parameters[XZ6];
     const ariane6_real_t t132 = (t65 - t113) * parameters[XY6] + t131 + (t102 * parameters[MX6]
         - t114 * parameters[MY6]);
+    /* link j5: force and moment */
     const ariane6_real_t t133 = t60 * (parameters[ZZ5] - parameters[XX5]) + t61 * parameters[YY5]
         + t46 * parameters[XY5];
     const ariane6_real_t t134 = (t105 - t106) * parameters[XZ5] - (t133 + t29 * parameters[YZ5])
         + (t98 * parameters[MZ5] + t100 * parameters[MX5]);
-    const ariane6_real_t t135 = t134 + t132;
-    const ariane6_real_t t136 = t22 - t21;
+    const ariane6_real_t t135 = t134 + t132; /* link j6: what it passes on */
+    const ariane6_real_t t136 = t22 - t21; /* link j5: motion */
+    /* link j4: force and moment */
     const ariane6_real_t t137 = t39 * (parameters[ZZ4] - parameters[YY4]) + t40 * parameters[XX4]
         + t136 * parameters[XY4];
-    const ariane6_real_t t138 = t34 - t36;
-    const ariane6_real_t t139 = t35 * t35;
+    const ariane6_real_t t138 = t34 - t36; /* link j5: motion */
+    const ariane6_real_t t139 = t35 * t35; /* link j4: motion */
     const ariane6_real_t t140 = t20 * t20;
+    /* link j4: force and moment */
     const ariane6_real_t t141 = (t140 - t139) * parameters[YZ4] + (t137 + t138 * parameters[XZ4])
         + (t97 * parameters[MY4] - t100 * parameters[MZ4]);
-    const ariane6_real_t t142 = t141 - (t24 * t129 + t25 * t135);
-    const ariane6_real_t t143 = t47 * t119 - t30 * t122;
+    const ariane6_real_t t142 = t141 - (t24 * t129 + t25 * t135); /* link j5: what it passes on */
+    const ariane6_real_t t143 = t47 * t119 - t30 * t122; /* link j6: what it passes on */
+    /* link j5: force and moment */
     const ariane6_real_t t144 = t28 * (parameters[XX5] - parameters[YY5]) + t23 * parameters[ZZ5]
         + t59 * parameters[YZ5];
     const ariane6_real_t t145 = (t105 - t127) * parameters[XY5] + (t144 - t42 * parameters[XZ5])
         + (t98 * parameters[MY5] - t104 * parameters[MX5]);
+    /* link j6: what it passes on */
     const ariane6_real_t t146 = t145 + (t30 * t109 + t47 * t116 + ARIANE6_C(0.3) * t143);
+    /* link j4: force and moment */
     const ariane6_real_t t147 = t22 * parameters[YY4] - t21 * (parameters[ZZ4] - parameters[XX4])
         + t41 * parameters[XY4];
-    const ariane6_real_t t148 = t19 * t19;
+    const ariane6_real_t t148 = t19 * t19; /* link j4: motion */
+    /* link j4: force and moment */
     const ariane6_real_t t149 = (t148 - t140) * parameters[XZ4] + (t147 + t37 * parameters[YZ4])
         + (t92 * parameters[MZ4] - t97 * parameters[MX4]);
-    const ariane6_real_t t150 = t149 + t146;
+    const ariane6_real_t t150 = t149 + t146; /* link j5: what it passes on */
+    /* link j5: force and moment */
     const ariane6_real_t t151 = (t127 + t106) * parameters[MX5] + t29 * parameters[MY5]
         - t59 * parameters[MZ5];
-    const ariane6_real_t t152 = t98 * parameters[M5] + t151 + t143;
+    const ariane6_real_t t152 = t98 * parameters[M5] + t151 + t143; /* link j6: what it passes on */
+    /* link j5: force and moment */
     const ariane6_real_t t153 = t104 * parameters[M5] + (t107 * parameters[MY5] + t126 * parameters[MX5]
         - t42 * parameters[MZ5]);
-    const ariane6_real_t t154 = t113 + t65;
+    const ariane6_real_t t154 = t113 + t65; /* link j6: columns */
+    /* link j6: force and moment */
     const ariane6_real_t t155 = t108 * parameters[M6] + (t154 * parameters[MZ6] + (t110 * parameters[MY6]
         - t57 * parameters[MX6]));
-    const ariane6_real_t t156 = t153 + t155;
+    const ariane6_real_t t156 = t153 + t155; /* link j6: what it passes on */
+    /* link j4: force and moment */
     const ariane6_real_t t157 = t37 * parameters[MY4] - (t139 + t140) * parameters[MX4]
         - t18 * parameters[MZ4];
+    /* link j5: what it passes on */
     const ariane6_real_t t158 = t157 - t92 * parameters[M4] + (t25 * t156 - t24 * t152);
-    const ariane6_real_t t159 = t105 + t127;
+    const ariane6_real_t t159 = t105 + t127; /* link j6: motion */
+    /* link j5: force and moment */
     const ariane6_real_t t160 = t100 * parameters[M5] + (t46 * parameters[MY5] - t124 * parameters[MX5]
         - t159 * parameters[MZ5]);
+    /* link j4: force and moment */
     const ariane6_real_t t161 = (t148 + t140) * parameters[MY4] + t138 * parameters[MX4]
         + t38 * parameters[MZ4];
-    const ariane6_real_t t162 = t100 * parameters[M4] + t161 + (t160 + t123);
-    const ariane6_real_t t163 = t17 * t158 - t11 * t162;
+    const ariane6_real_t t162 = t100 * parameters[M4] + t161 + (t160 + t123); /* link j5: what it passes on */
+    const ariane6_real_t t163 = t17 * t158 - t11 * t162; /* link j4: what it passes on */
+    /* link j3: force and moment */
     const ariane6_real_t t164 = t15 * parameters[XX3] - t14 * (parameters[YY3] - parameters[ZZ3])
         - t84 * parameters[XY3];
     const ariane6_real_t t165 = t90 * parameters[MY3] + t93 * parameters[MZ3] + ((t80 - t81) * parameters[YZ3]
         + (t164 + t94 * parameters[XZ3]));
+    /* link j4: what it passes on */
     const ariane6_real_t t166 = t165 + (t17 * t150 - t11 * t142 + ARIANE6_C(-0.488) * t163);
+    /* link j4: force and moment */
     const ariane6_real_t t167 = t34 * parameters[ZZ4] - t36 * (parameters[YY4] - parameters[XX4])
         + t18 * parameters[YZ4];
     const ariane6_real_t t168 = (t139 - t148) * parameters[XY4] + (t167 - t38 * parameters[XZ4])
         + (t100 * parameters[MX4] - t92 * parameters[MY4]);
-    const ariane6_real_t t169 = t168 + (t24 * t135 - t25 * t129);
+    const ariane6_real_t t169 = t168 + (t24 * t135 - t25 * t129); /* link j5: what it passes on */
+    /* link j3: force and moment */
     const ariane6_real_t t170 = t32 * (parameters[ZZ3] - parameters[XX3]) + t33 * parameters[YY3]
         - t16 * parameters[XY3];
     const ariane6_real_t t171 = t90 * parameters[MX3] - t79 * parameters[MZ3] + ((t95 - t81) * parameters[XZ3]
         + (t170 + t10 * parameters[YZ3]));
-    const ariane6_real_t t172 = t171 + (t169 + ARIANE6_C(0.17) * t163);
-    const ariane6_real_t t173 = dq[1] * t70;
+    const ariane6_real_t t172 = t171 + (t169 + ARIANE6_C(0.17) * t163); /* link j4: what it passes on */
+    const ariane6_real_t t173 = dq[1] * t70; /* link j2: motion */
     const ariane6_real_t t174 = t0 * ddq[0];
     const ariane6_real_t t175 = t174 + t173;
+    /* link j2: force and moment */
     const ariane6_real_t t176 = t173 * (parameters[ZZ2] - parameters[YY2]) + t175 * parameters[XX2]
         + t88 * parameters[XY2];
     const ariane6_real_t t177 = (t71 - t72) * parameters[YZ2] + (t176 + t77 * parameters[XZ2])
         + (t74 * parameters[MZ2] + t89 * parameters[MY2]);
-    const ariane6_real_t t178 = t177 + (t1 * t166 + t3 * t172);
-    const ariane6_real_t t179 = t95 + t80;
+    const ariane6_real_t t178 = t177 + (t1 * t166 + t3 * t172); /* link j3: what it passes on */
+    const ariane6_real_t t179 = t95 + t80; /* link j4: motion */
+    /* link j3: force and moment */
     const ariane6_real_t t180 = t179 * parameters[MZ3] - (t84 * parameters[MX3] + t16 * parameters[MY3])
         - t90 * parameters[M3];
-    const ariane6_real_t t181 = t180 + t163;
-    const ariane6_real_t t182 = t173 + t175;
+    const ariane6_real_t t181 = t180 + t163; /* link j4: what it passes on */
+    const ariane6_real_t t182 = t173 + t175; /* link j3: motion */
+    /* link j2: force and moment */
     const ariane6_real_t t183 = t86 * (parameters[ZZ2] - parameters[XX2]) - t87 * parameters[YY2]
         - t182 * parameters[XY2];
-    const ariane6_real_t t184 = t75 * t75;
+    const ariane6_real_t t184 = t75 * t75; /* link j2: motion */
+    /* link j2: force and moment */
     const ariane6_real_t t185 = (t184 - t72) * parameters[XZ2] + (t183 + (t76 - ddq[1]) * parameters[YZ2]);
+    /* link j3: what it passes on */
     const ariane6_real_t t186 = t185 + (t89 * parameters[MX2] - t69 * parameters[MZ2]) + (t1 * t172
         - t3 * t166 + ARIANE6_C(-0.685) * t181);
-    const ariane6_real_t t187 = t184 + t71;
+    const ariane6_real_t t187 = t184 + t71; /* link j3: motion */
+    /* link j2: force and moment */
     const ariane6_real_t t188 = t187 * parameters[MZ2] + (t88 * parameters[MX2] - t182 * parameters[MY2])
         - t89 * parameters[M2];
+    /* link j2: what it passes on */
     const ariane6_real_t t189 = t0 * t178 - t2 * t186 + ARIANE6_C(0.18) * (t188 + t181);
     const ariane6_real_t t190 = ddq[0] * parameters[ZZ1] + t189;
+    /* joint j1: drive */
     const ariane6_real_t t192 = ARIANE6_SQRT(ARIANE6_C(0.0406334) * t191 + ARIANE6_C(0.10828541));
     const ariane6_real_t t194 = ARIANE6_C(0.061525739908548135) * t192 / t193;
     const ariane6_real_t t195 = ARIANE6_C(1.0) / t192;
     const ariane6_real_t t196 = ARIANE6_C(4063.3400000000006) * t195;
     const ariane6_real_t t197 = t193 * t196;
     const ariane6_real_t t198 = t197 * dq[0];
-    const ariane6_real_t t199 = ariane6_sign(t198);
-    const ariane6_real_t t200 = ARIANE6_C(82.55365977800001) * (t195 * t195);
+    const ariane6_real_t t199 = ariane6_sign(t198); /* joint j1: coulomb_friction */
+    const ariane6_real_t t200 = ARIANE6_C(82.55365977800001) * (t195 * t195); /* joint j1: drive */
     const ariane6_real_t t201 = t193 * t193;
     const ariane6_real_t t202 = ARIANE6_C(4063.3400000000006) * t191 + t200 * t201;
     const ariane6_real_t t203 = t195 * t202;
     const ariane6_real_t t204 = t198 * parameters[FV1] + t199 * parameters[FC1] + (t197 * ddq[0]
         - t203 * t67) * parameters[IA1];
     input[0] = ARIANE6_C(250.0) * t204 + t194 * t190;
-    const ariane6_real_t t205 = t11 * t158 + t17 * t162;
-    const ariane6_real_t t206 = t148 + t139;
+    const ariane6_real_t t205 = t11 * t158 + t17 * t162; /* link j4: what it passes on */
+    const ariane6_real_t t206 = t148 + t139; /* link j5: motion */
+    /* link j4: force and moment */
     const ariane6_real_t t207 = t97 * parameters[M4] + (t206 * parameters[MZ4] + (t41 * parameters[MY4]
         - t136 * parameters[MX4]));
-    const ariane6_real_t t208 = t207 + (t25 * t152 + t24 * t156);
+    const ariane6_real_t t208 = t207 + (t25 * t152 + t24 * t156); /* link j5: what it passes on */
+    /* link j4: what it passes on */
     const ariane6_real_t t209 = t17 * t142 + t11 * t150 + (ARIANE6_C(0.17) * t208 + ARIANE6_C(-0.488) * t205);
+    /* link j3: force and moment */
     const ariane6_real_t t210 = t9 * parameters[ZZ3] - t8 * (parameters[XX3] - parameters[YY3])
         + t31 * parameters[YZ3];
     const ariane6_real_t t211 = (t95 - t80) * parameters[XY3] + (t210 + t12 * parameters[XZ3])
         - (t93 * parameters[MX3] + t79 * parameters[MY3]);
-    const ariane6_real_t t212 = t211 + t209;
+    const ariane6_real_t t212 = t211 + t209; /* link j4: what it passes on */
+    /* link j3: force and moment */
     const ariane6_real_t t213 = t79 * parameters[M3] + (t10 * parameters[MY3] - t82 * parameters[MX3]
         + t31 * parameters[MZ3]);
-    const ariane6_real_t t214 = t213 + t205;
+    const ariane6_real_t t214 = t213 + t205; /* link j4: what it passes on */
+    /* link j3: force and moment */
     const ariane6_real_t t215 = t93 * parameters[M3] + (t96 * parameters[MY3] - t94 * parameters[MX3]
         + t12 * parameters[MZ3]);
-    const ariane6_real_t t216 = t215 + t208;
+    const ariane6_real_t t216 = t215 + t208; /* link j4: what it passes on */
+    /* link j2: force and moment */
     const ariane6_real_t t217 = t76 * (parameters[YY2] - parameters[XX2]) + ddq[1] * parameters[ZZ2]
         + t85 * parameters[YZ2];
     const ariane6_real_t t218 = (t184 - t71) * parameters[XY2] + (t217 + t174 * parameters[XZ2])
         - (t74 * parameters[MX2] + t69 * parameters[MY2]);
+    /* link j3: what it passes on */
     const ariane6_real_t t219 = t218 + (t212 + ARIANE6_C(0.685) * (t3 * t214 - t1 * t216));
+    /* joint j2: drive */
     const ariane6_real_t t220 = ARIANE6_C(-0.766044443118978) * t2 + ARIANE6_C(0.6427876096865393) * t0;
     const ariane6_real_t t221 = ARIANE6_SQRT(ARIANE6_C(0.126918) * t220 + ARIANE6_C(0.420682));
     const ariane6_real_t t222 = ARIANE6_C(0.766044443118978) * t0 + ARIANE6_C(0.6427876096865393) * t2;
@@ -421,14 +462,15 @@ int ariane6_inverse_dynamics_derivatives_standard(
     const ariane6_real_t t225 = ARIANE6_C(-12691.800000000003) * t224;
     const ariane6_real_t t226 = t222 * t225;
     const ariane6_real_t t227 = t226 * dq[1];
-    const ariane6_real_t t228 = ariane6_sign(t227);
-    const ariane6_real_t t229 = ARIANE6_C(-805.4089362000002) * (t224 * t224);
+    const ariane6_real_t t228 = ariane6_sign(t227); /* joint j2: coulomb_friction */
+    const ariane6_real_t t229 = ARIANE6_C(-805.4089362000002) * (t224 * t224); /* joint j2: drive */
     const ariane6_real_t t230 = t222 * t222;
     const ariane6_real_t t231 = ARIANE6_C(-12691.800000000003) * t220 + t229 * t230;
     const ariane6_real_t t232 = t224 * t231;
     const ariane6_real_t t233 = t227 * parameters[FV2] + t228 * parameters[FC2] + (t226 * ddq[1]
         - t232 * t72) * parameters[IA2];
     input[1] = ARIANE6_C(250.0) * t233 + t223 * t219;
+    /* joint j3: drive */
     const ariane6_real_t t234 = ARIANE6_C(-0.052335956242943966) * t1 + ARIANE6_C(-0.9986295347545738) * t3;
     const ariane6_real_t t235 = ARIANE6_SQRT(ARIANE6_C(0.083776) * t234 + ARIANE6_C(0.38408000000000003));
     const ariane6_real_t t236 = ARIANE6_C(0.052335956242943966) * t3 + ARIANE6_C(-0.9986295347545738) * t1;
@@ -437,8 +479,8 @@ int ariane6_inverse_dynamics_derivatives_standard(
     const ariane6_real_t t239 = ARIANE6_C(-8377.600000000002) * t238;
     const ariane6_real_t t240 = t236 * t239;
     const ariane6_real_t t241 = t240 * dq[2];
-    const ariane6_real_t t242 = ariane6_sign(t241);
-    const ariane6_real_t t243 = ARIANE6_C(-350.9209088000001) * (t238 * t238);
+    const ariane6_real_t t242 = ariane6_sign(t241); /* joint j3: coulomb_friction */
+    const ariane6_real_t t243 = ARIANE6_C(-350.9209088000001) * (t238 * t238); /* joint j3: drive */
     const ariane6_real_t t244 = t236 * t236;
     const ariane6_real_t t245 = ARIANE6_C(-8377.600000000002) * t234 + t243 * t244;
     const ariane6_real_t t246 = t238 * t245;
@@ -446,18 +488,19 @@ int ariane6_inverse_dynamics_derivatives_standard(
     const ariane6_real_t t248 = t241 * parameters[FV3] + t242 * parameters[FC3] + (t240 * ddq[2]
         - t246 * t247) * parameters[IA3];
     input[2] = ARIANE6_C(250.0) * t248 + t237 * t212;
-    const ariane6_real_t t249 = ariane6_sign(dq[3]);
+    const ariane6_real_t t249 = ariane6_sign(dq[3]); /* joint j4: coulomb_friction */
     const ariane6_real_t t250 = ARIANE6_C(1.0e2) * dq[3] * parameters[FV4] + t249 * parameters[FC4]
         + ARIANE6_C(1.0e2) * ddq[3] * parameters[IA4];
     input[3] = ARIANE6_C(20.0) * t250 + ARIANE6_C(-0.2) * t169;
+    /* joint j5: drive */
     const ariane6_real_t t251 = ARIANE6_SQRT(ARIANE6_C(0.035496) * t25 + ARIANE6_C(0.097));
     const ariane6_real_t t252 = ARIANE6_C(0.07043047103899029) * t251 / t24;
     const ariane6_real_t t253 = ARIANE6_C(1.0) / t251;
     const ariane6_real_t t254 = ARIANE6_C(3549.6000000000004) * t253;
     const ariane6_real_t t255 = t24 * t254;
     const ariane6_real_t t256 = t255 * dq[4];
-    const ariane6_real_t t257 = ariane6_sign(t256);
-    const ariane6_real_t t258 = ARIANE6_C(62.9983008) * (t253 * t253);
+    const ariane6_real_t t257 = ariane6_sign(t256); /* joint j5: coulomb_friction */
+    const ariane6_real_t t258 = ARIANE6_C(62.9983008) * (t253 * t253); /* joint j5: drive */
     const ariane6_real_t t259 = t24 * t24;
     const ariane6_real_t t260 = ARIANE6_C(3549.6000000000004) * t25 + t258 * t259;
     const ariane6_real_t t261 = t253 * t260;
@@ -465,7 +508,7 @@ int ariane6_inverse_dynamics_derivatives_standard(
     const ariane6_real_t t263 = t256 * parameters[FV5] + t257 * parameters[FC5] + (t255 * ddq[4]
         - t261 * t262) * parameters[IA5];
     input[4] = ARIANE6_C(250.0) * t263 + t252 * t146;
-    const ariane6_real_t t264 = ariane6_sign(dq[5]);
+    const ariane6_real_t t264 = ariane6_sign(dq[5]); /* joint j6: coulomb_friction */
     const ariane6_real_t t265 = ARIANE6_C(1.0e2) * dq[5] * parameters[FV6] + t264 * parameters[FC6]
         + ARIANE6_C(1.0e2) * ddq[5] * parameters[IA6];
     input[5] = ARIANE6_C(20.0) * t265 + ARIANE6_C(-0.2) * t132;
@@ -492,16 +535,19 @@ int ariane6_inverse_dynamics_derivatives_standard(
     const ariane6_real_t t283 = t50 * t282 + t54 * parameters[XZ6];
     const ariane6_real_t t284 = t281 - parameters[YY6];
     const ariane6_real_t t285 = t49 * parameters[YZ6] - t50 * t284;
+    /* link j6: inertia, momentum beyond */
     const ariane6_real_t t286 = t47 * (t278 + t280) + t30 * (t283 - t285);
     const ariane6_real_t t287 = t47 * t286;
+    /* link j6: column of the mass matrix */
     const ariane6_real_t t288 = t47 * parameters[MX6] - t30 * parameters[MY6];
     const ariane6_real_t t289 = ARIANE6_C(0.3) * t43;
-    const ariane6_real_t t290 = t288 * t289;
+    const ariane6_real_t t290 = t288 * t289; /* link j6: inertia, momentum beyond */
     const ariane6_real_t t291 = t54 * parameters[MY6] - t49 * parameters[MX6];
     const ariane6_real_t t292 = ARIANE6_C(-0.3) * t291;
     const ariane6_real_t t293 = ARIANE6_C(0.3) * t26;
+    /* link j6: column of the mass matrix */
     const ariane6_real_t t294 = t47 * parameters[MY6] + t30 * parameters[MX6];
-    const ariane6_real_t t295 = t294 * t293;
+    const ariane6_real_t t295 = t294 * t293; /* link j6: inertia, momentum beyond */
     const ariane6_real_t t296 = t292 + (t295 - t290);
     const ariane6_real_t t297 = t27 * parameters[XZ5];
     const ariane6_real_t t298 = t43 * parameters[XY5];
@@ -515,8 +561,9 @@ int ariane6_inverse_dynamics_derivatives_standard(
     const ariane6_real_t t306 = t49 * parameters[MZ6] + t50 * parameters[MY6];
     const ariane6_real_t t307 = t50 * parameters[MX6] + t54 * parameters[MZ6];
     const ariane6_real_t t308 = t47 * t306 + t30 * t307;
-    const ariane6_real_t t309 = ARIANE6_C(-0.3) * parameters[M6];
+    const ariane6_real_t t309 = ARIANE6_C(-0.3) * parameters[M6]; /* link j6: inertia of it and all beyond */
     const ariane6_real_t t310 = parameters[MZ6] - t309;
+    /* link j6: inertia, momentum beyond */
     const ariane6_real_t t311 = ARIANE6_C(0.3) * t308 + t310 * t289 - (t47 * t304 + t30 * t305);
     const ariane6_real_t t312 = ARIANE6_C(0.5) * (parameters[ZZ5] + (parameters[XX5] + parameters[YY5]));
     const ariane6_real_t t313 = t312 - parameters[YY5];
@@ -525,96 +572,113 @@ int ariane6_inverse_dynamics_derivatives_standard(
     const ariane6_real_t t316 = t54 * t284 + t49 * parameters[XY6];
     const ariane6_real_t t317 = t312 - parameters[XX5];
     const ariane6_real_t t318 = t43 * t317 - t26 * parameters[XZ5] + (t47 * t315 + t30 * t316);
+    /* link j5: inertia, momentum beyond */
     const ariane6_real_t t319 = t24 * (t299 + t302) + t25 * (t314 - t318);
     const ariane6_real_t t320 = t24 * t319;
     const ariane6_real_t t321 = t35 * parameters[XZ4];
     const ariane6_real_t t322 = t20 * parameters[XY4];
     const ariane6_real_t t323 = t321 + t322 - (t302 - t320);
+    /* link j6: inertia, momentum beyond */
     const ariane6_real_t t324 = t296 + (t287 - t278 - t295) - (t297 + t301);
     const ariane6_real_t t325 = t19 * parameters[YZ4];
-    const ariane6_real_t t326 = t322 + t325 + t324;
-    const ariane6_real_t t327 = t30 * t286;
+    const ariane6_real_t t326 = t322 + t325 + t324; /* link j5: inertia, momentum beyond */
+    const ariane6_real_t t327 = t30 * t286; /* link j6: inertia, momentum beyond */
     const ariane6_real_t t328 = t26 * parameters[XY5] - t27 * t317 + (t283 - t327 - t288 * t293);
     const ariane6_real_t t329 = t47 * t307 - t30 * t306;
     const ariane6_real_t t330 = t47 * t305 - t30 * t304 + (ARIANE6_C(-0.3) * t329 - t310 * t293);
     const ariane6_real_t t331 = t27 * parameters[XY5] - t26 * t313 + t330;
     const ariane6_real_t t332 = ARIANE6_C(0.5) * (parameters[ZZ4] + (parameters[XX4] + parameters[YY4]));
     const ariane6_real_t t333 = parameters[XX4] - t332;
+    /* link j5: inertia, momentum beyond */
     const ariane6_real_t t334 = t20 * t333 + t19 * parameters[XZ4] + (t24 * t328 - t25 * t331);
     const ariane6_real_t t335 = t312 - parameters[ZZ5];
+    /* link j6: inertia, momentum beyond */
     const ariane6_real_t t336 = t285 + t327 - t294 * t289 - (t27 * t335 + t43 * parameters[YZ5]);
     const ariane6_real_t t337 = t43 * parameters[XZ5] - t26 * t335 + (t30 * t315 - t47 * t316);
     const ariane6_real_t t338 = t332 - parameters[YY4];
+    /* link j5: inertia, momentum beyond */
     const ariane6_real_t t339 = t35 * parameters[YZ4] - t20 * t338 - (t25 * t337 - t24 * t336);
+    /* link j4: inertia, momentum beyond */
     const ariane6_real_t t340 = t11 * (t323 + t326) + t17 * (t334 - t339);
     const ariane6_real_t t341 = t11 * t340;
+    /* link j6: inertia, momentum beyond */
     const ariane6_real_t t342 = t43 * parameters[MY5] - t27 * parameters[MZ5] + (t308
         + parameters[M6] * t289);
     const ariane6_real_t t343 = t291 - (t43 * parameters[MX5] + t26 * parameters[MZ5]);
+    /* link j5: inertia, momentum beyond */
     const ariane6_real_t t344 = t25 * t343 - t24 * t342 - (t35 * parameters[MZ4] + t20 * parameters[MY4]);
+    /* link j6: inertia, momentum beyond */
     const ariane6_real_t t345 = t26 * parameters[MY5] + t27 * parameters[MX5] + (t329
         + parameters[M6] * t293);
+    /* link j5: inertia, momentum beyond */
     const ariane6_real_t t346 = t20 * parameters[MX4] + t19 * parameters[MZ4] + t345;
-    const ariane6_real_t t347 = t17 * t346 - t11 * t344;
+    const ariane6_real_t t347 = t17 * t346 - t11 * t344; /* link j4: inertia, momentum beyond */
     const ariane6_real_t t348 = ARIANE6_C(0.17) * t347;
-    const ariane6_real_t t349 = t294 - parameters[MZ5];
-    const ariane6_real_t t350 = parameters[MY4] + t349;
-    const ariane6_real_t t351 = parameters[MX5] + t288;
+    const ariane6_real_t t349 = t294 - parameters[MZ5]; /* link j6: inertia of it and all beyond */
+    const ariane6_real_t t350 = parameters[MY4] + t349; /* link j5: inertia of it and all beyond */
+    const ariane6_real_t t351 = parameters[MX5] + t288; /* link j6: inertia of it and all beyond */
     const ariane6_real_t t352 = parameters[MY5] + t310;
-    const ariane6_real_t t353 = t24 * t351 - t25 * t352;
-    const ariane6_real_t t354 = parameters[MX4] + t353;
-    const ariane6_real_t t355 = t17 * t350 - t11 * t354;
-    const ariane6_real_t t356 = parameters[M5] + parameters[M6];
-    const ariane6_real_t t357 = parameters[M4] + t356;
-    const ariane6_real_t t358 = ARIANE6_C(0.17) * t357;
+    const ariane6_real_t t353 = t24 * t351 - t25 * t352; /* link j5: column of the mass matrix */
+    const ariane6_real_t t354 = parameters[MX4] + t353; /* link j5: inertia of it and all beyond */
+    const ariane6_real_t t355 = t17 * t350 - t11 * t354; /* link j4: column of the mass matrix */
+    const ariane6_real_t t356 = parameters[M5] + parameters[M6]; /* link j6: inertia of it and all beyond */
+    const ariane6_real_t t357 = parameters[M4] + t356; /* link j5: inertia of it and all beyond */
+    const ariane6_real_t t358 = ARIANE6_C(0.17) * t357; /* link j4: inertia of it and all beyond */
     const ariane6_real_t t359 = t355 + t358;
-    const ariane6_real_t t360 = ARIANE6_C(-0.488) * t13;
-    const ariane6_real_t t361 = t359 * t360;
+    const ariane6_real_t t360 = ARIANE6_C(-0.488) * t13; /* link j4: velocity of its origin */
+    const ariane6_real_t t361 = t359 * t360; /* link j4: inertia, momentum beyond */
+    /* link j5: inertia, momentum beyond */
     const ariane6_real_t t362 = t19 * parameters[MY4] - t35 * parameters[MX4] + (t25 * t342 + t24 * t343);
-    const ariane6_real_t t363 = ARIANE6_C(-0.488) * t362;
-    const ariane6_real_t t364 = t11 * t350 + t17 * t354;
+    const ariane6_real_t t363 = ARIANE6_C(-0.488) * t362; /* link j4: inertia, momentum beyond */
+    const ariane6_real_t t364 = t11 * t350 + t17 * t354; /* link j4: column of the mass matrix */
     const ariane6_real_t t365 = ARIANE6_C(0.488) * t5 + ARIANE6_C(0.17) * t7;
-    const ariane6_real_t t366 = t364 * t365;
-    const ariane6_real_t t367 = t24 * t352 + t25 * t351;
-    const ariane6_real_t t368 = parameters[MZ4] + t367;
-    const ariane6_real_t t369 = ARIANE6_C(0.488) * t357;
+    const ariane6_real_t t366 = t364 * t365; /* link j4: inertia, momentum beyond */
+    const ariane6_real_t t367 = t24 * t352 + t25 * t351; /* link j5: column of the mass matrix */
+    const ariane6_real_t t368 = parameters[MZ4] + t367; /* link j5: inertia of it and all beyond */
+    const ariane6_real_t t369 = ARIANE6_C(0.488) * t357; /* link j4: inertia of it and all beyond */
     const ariane6_real_t t370 = t368 + t369;
-    const ariane6_real_t t371 = ARIANE6_C(0.17) * t13;
-    const ariane6_real_t t372 = t370 * t371;
+    const ariane6_real_t t371 = ARIANE6_C(0.17) * t13; /* link j4: velocity of its origin */
+    const ariane6_real_t t372 = t370 * t371; /* link j4: inertia, momentum beyond */
     const ariane6_real_t t373 = t348 + t363 - (t361 + t372 + t366);
     const ariane6_real_t t374 = t7 * parameters[XZ3];
     const ariane6_real_t t375 = t13 * parameters[XY3];
     const ariane6_real_t t376 = t374 - t375 + (t373 + (t326 - t341 + (t361 - t348)));
-    const ariane6_real_t t377 = t321 - t325 - (t299 - t320);
+    const ariane6_real_t t377 = t321 - t325 - (t299 - t320); /* link j5: inertia, momentum beyond */
     const ariane6_real_t t378 = t5 * parameters[YZ3];
+    /* link j4: inertia, momentum beyond */
     const ariane6_real_t t379 = t375 - t378 + (t373 + (t377 - (t363 - t372)));
-    const ariane6_real_t t380 = t25 * t319;
+    const ariane6_real_t t380 = t25 * t319; /* link j5: inertia, momentum beyond */
     const ariane6_real_t t381 = t332 - parameters[ZZ4];
     const ariane6_real_t t382 = t20 * parameters[YZ4] - t35 * t381 + (t380 - t314);
     const ariane6_real_t t383 = t20 * parameters[XZ4] - t19 * t381 + (t25 * t328 + t24 * t331);
+    /* link j4: inertia, momentum beyond */
     const ariane6_real_t t384 = t11 * t382 + t17 * t383 + (ARIANE6_C(-0.488) * t347 + t370 * t360);
     const ariane6_real_t t385 = ARIANE6_C(0.5) * (parameters[ZZ3] + (parameters[XX3] + parameters[YY3]));
     const ariane6_real_t t386 = parameters[YY3] - t385;
     const ariane6_real_t t387 = t13 * t386 - t7 * parameters[YZ3] + t384;
+    /* link j5: inertia, momentum beyond */
     const ariane6_real_t t388 = t19 * parameters[XY4] - t35 * t333 + (t318 + t380);
     const ariane6_real_t t389 = t25 * t336 + t24 * t337 - (t19 * t338 + t35 * parameters[XY4]);
+    /* link j4: inertia, momentum beyond */
     const ariane6_real_t t390 = t17 * t389 - t11 * t388 + (ARIANE6_C(-0.17) * t362 - t359 * t371);
     const ariane6_real_t t391 = parameters[XX3] - t385;
     const ariane6_real_t t392 = t13 * t391 - t5 * parameters[XZ3] + t390;
+    /* link j3: inertia, momentum beyond */
     const ariane6_real_t t393 = t1 * (t376 - t379) + t3 * (t387 - t392);
     const ariane6_real_t t394 = t1 * t393;
+    /* link j4: inertia, momentum beyond */
     const ariane6_real_t t395 = t13 * parameters[MY3] - t7 * parameters[MZ3] + (t347 - t357 * t360);
     const ariane6_real_t t396 = t5 * parameters[MZ3] - t13 * parameters[MX3] + (t362 + t357 * t371);
-    const ariane6_real_t t397 = t1 * t395 - t3 * t396;
+    const ariane6_real_t t397 = t1 * t395 - t3 * t396; /* link j3: inertia, momentum beyond */
     const ariane6_real_t t398 = ARIANE6_C(0.685) * t397;
-    const ariane6_real_t t399 = t359 - parameters[MX3];
+    const ariane6_real_t t399 = t359 - parameters[MX3]; /* link j4: inertia of it and all beyond */
     const ariane6_real_t t400 = parameters[MY3] + t370;
-    const ariane6_real_t t401 = t3 * t399 - t1 * t400;
-    const ariane6_real_t t402 = ARIANE6_C(-0.685) * dq[1];
-    const ariane6_real_t t403 = t401 * t402;
-    const ariane6_real_t t404 = t364 - parameters[MZ3];
-    const ariane6_real_t t405 = ARIANE6_C(-0.685) * t70;
-    const ariane6_real_t t406 = t404 * t405;
+    const ariane6_real_t t401 = t3 * t399 - t1 * t400; /* link j3: column of the mass matrix */
+    const ariane6_real_t t402 = ARIANE6_C(-0.685) * dq[1]; /* link j3: velocity of its origin */
+    const ariane6_real_t t403 = t401 * t402; /* link j3: inertia, momentum beyond */
+    const ariane6_real_t t404 = t364 - parameters[MZ3]; /* link j4: inertia of it and all beyond */
+    const ariane6_real_t t405 = ARIANE6_C(-0.685) * t70; /* link j3: velocity of its origin */
+    const ariane6_real_t t406 = t404 * t405; /* link j3: inertia, momentum beyond */
     const ariane6_real_t t407 = t403 - t406 - t398;
     const ariane6_real_t t408 = t70 * parameters[XZ2];
     const ariane6_real_t t409 = dq[1] * parameters[XY2];
@@ -626,159 +690,187 @@ int ariane6_inverse_dynamics_derivatives_standard(
     const ariane6_real_t t415 = t414 - parameters[YY2];
     const ariane6_real_t t416 = t70 * parameters[YZ2] + dq[1] * t415 + (t413 - t387);
     const ariane6_real_t t417 = t3 * t395 + t1 * t396;
-    const ariane6_real_t t418 = t3 * t400 + t1 * t399;
-    const ariane6_real_t t419 = parameters[M3] + t357;
-    const ariane6_real_t t420 = ARIANE6_C(0.685) * t419;
+    const ariane6_real_t t418 = t3 * t400 + t1 * t399; /* link j3: column of the mass matrix */
+    const ariane6_real_t t419 = parameters[M3] + t357; /* link j4: inertia of it and all beyond */
+    const ariane6_real_t t420 = ARIANE6_C(0.685) * t419; /* link j3: inertia of it and all beyond */
     const ariane6_real_t t421 = t420 - t418;
     const ariane6_real_t t422 = parameters[XX2] - t414;
+    /* link j3: inertia, momentum beyond */
     const ariane6_real_t t423 = dq[1] * t422 - t75 * parameters[XZ2] + (t392 + t413 + (ARIANE6_C(0.685) * t417
         + t421 * t402));
+    /* link j2: inertia, momentum beyond */
     const ariane6_real_t t424 = t2 * (t2 * (t412 - t410) + t0 * (t416 + t423));
+    /* link j3: inertia, momentum beyond */
     const ariane6_real_t t425 = t70 * parameters[MZ2] - dq[1] * parameters[MY2] - t397;
     const ariane6_real_t t426 = t75 * parameters[MZ2] - dq[1] * parameters[MX2] + (t417 + t419 * t402);
-    const ariane6_real_t t427 = t404 - parameters[MZ2];
+    const ariane6_real_t t427 = t404 - parameters[MZ2]; /* link j3: inertia of it and all beyond */
+    /* link j2: inertia, momentum beyond */
     const ariane6_real_t t428 = ARIANE6_C(0.18) * (t2 * t425 + t0 * t426) - t427 * (ARIANE6_C(-0.18) * dq[0]);
     const ariane6_real_t t429 = ARIANE6_C(250.0) * (t197 * parameters[FV1]
         + parameters[IA1] * (t203 * (ARIANE6_C(-2.0) * dq[0])));
     input_by_dq[0] = t429 + t194 * (ARIANE6_C(2.0) * (t410 + t424 + t428));
-    const ariane6_real_t t430 = t17 * t340;
+    const ariane6_real_t t430 = t17 * t340; /* link j4: inertia, momentum beyond */
     const ariane6_real_t t431 = t17 * t344 + t11 * t346;
     const ariane6_real_t t432 = t5 * parameters[XY3] - t7 * t391 - (t334 - t430 - (ARIANE6_C(-0.17) * t431
         + t359 * t365));
     const ariane6_real_t t433 = t11 * t383 - t17 * t382 + (ARIANE6_C(-0.488) * t431 + t370 * t365);
     const ariane6_real_t t434 = t7 * parameters[XY3] - t5 * t386 + t433;
     const ariane6_real_t t435 = t7 * parameters[MX3] - t5 * parameters[MY3] + (t431 - t357 * t365);
+    /* link j3: inertia, momentum beyond */
     const ariane6_real_t t436 = t1 * t432 + t3 * t434 + (ARIANE6_C(0.685) * t435 - t421 * t405);
+    /* link j2: derivatives */
     const ariane6_real_t t437 = ARIANE6_C(2.0) * (t75 * parameters[XY2] - t70 * t422 + t436);
+    /* link j3: inertia, momentum beyond */
     const ariane6_real_t t438 = t70 * parameters[XY2] + t75 * t415 - (t3 * t432 - t1 * t434 + t401 * t405);
-    const ariane6_real_t t439 = ARIANE6_C(2.0) * t438;
-    const ariane6_real_t t440 = t401 - parameters[MY2];
+    const ariane6_real_t t439 = ARIANE6_C(2.0) * t438; /* link j2: derivatives */
+    const ariane6_real_t t440 = t401 - parameters[MY2]; /* link j3: inertia of it and all beyond */
     const ariane6_real_t t441 = parameters[MX2] + t421;
-    const ariane6_real_t t442 = ARIANE6_C(0.36) * dq[0];
+    const ariane6_real_t t442 = ARIANE6_C(0.36) * dq[0]; /* link j6: derivatives */
+    /* link j2: derivatives */
     const ariane6_real_t t443 = t0 * t437 - t2 * t439 + (t0 * t441 - t2 * t440) * t442;
     input_by_dq[6] = t223 * t443;
-    const ariane6_real_t t444 = ARIANE6_C(2.0) * t432;
+    const ariane6_real_t t444 = ARIANE6_C(2.0) * t432; /* link j3: derivatives */
     const ariane6_real_t t445 = ARIANE6_C(2.0) * t434;
-    const ariane6_real_t t446 = ARIANE6_C(-1.37) * t70;
-    const ariane6_real_t t447 = t1 * t444 + t3 * t445 + t418 * t446;
+    const ariane6_real_t t446 = ARIANE6_C(-1.37) * t70; /* link j6: derivatives */
+    const ariane6_real_t t447 = t1 * t444 + t3 * t445 + t418 * t446; /* link j3: derivatives */
     const ariane6_real_t t448 = t3 * t444 - t1 * t445 + t401 * t446;
     const ariane6_real_t t449 = t0 * t447 + t2 * t448 - (t2 * t401 + t0 * t418) * t442;
     input_by_dq[12] = t237 * t449;
-    const ariane6_real_t t450 = ARIANE6_C(2.0) * t388;
+    const ariane6_real_t t450 = ARIANE6_C(2.0) * t388; /* link j4: derivatives */
     const ariane6_real_t t451 = ARIANE6_C(2.0) * t389;
-    const ariane6_real_t t452 = ARIANE6_C(-0.34) * t13;
-    const ariane6_real_t t453 = t17 * t451 - t11 * t450 + t355 * t452;
+    const ariane6_real_t t452 = ARIANE6_C(-0.34) * t13; /* link j6: derivatives */
+    const ariane6_real_t t453 = t17 * t451 - t11 * t450 + t355 * t452; /* link j4: derivatives */
     const ariane6_real_t t454 = ARIANE6_C(2.0) * t377;
-    const ariane6_real_t t455 = ARIANE6_C(2.0) * t365;
+    const ariane6_real_t t455 = ARIANE6_C(2.0) * t365; /* link j6: derivatives */
     const ariane6_real_t t456 = ARIANE6_C(-0.976) * t13;
-    const ariane6_real_t t457 = t364 * t455 + t355 * t456 - t454;
-    const ariane6_real_t t458 = ARIANE6_C(1.37) * dq[1];
-    const ariane6_real_t t459 = t3 * t364;
+    const ariane6_real_t t457 = t364 * t455 + t355 * t456 - t454; /* link j4: derivatives */
+    const ariane6_real_t t458 = ARIANE6_C(1.37) * dq[1]; /* link j6: derivatives */
+    const ariane6_real_t t459 = t3 * t364; /* link j4: column of the mass matrix */
+    /* link j4: derivatives */
     const ariane6_real_t t460 = t1 * t453 + t3 * t457 + (t355 * t458 + t459 * t446);
-    const ariane6_real_t t461 = t1 * t364;
-    const ariane6_real_t t462 = t3 * t453 - t1 * t457 - t461 * t446;
+    const ariane6_real_t t461 = t1 * t364; /* link j4: column of the mass matrix */
+    const ariane6_real_t t462 = t3 * t453 - t1 * t457 - t461 * t446; /* link j4: derivatives */
     const ariane6_real_t t463 = t0 * t460 + t2 * t462 + (t2 * t461 - t0 * t459) * t442;
     input_by_dq[18] = ARIANE6_C(0.2) * t463;
-    const ariane6_real_t t464 = ARIANE6_C(2.0) * t328;
+    const ariane6_real_t t464 = ARIANE6_C(2.0) * t328; /* link j5: derivatives */
     const ariane6_real_t t465 = ARIANE6_C(-2.0) * t331;
     const ariane6_real_t t466 = t24 * t464 + t25 * t465;
     const ariane6_real_t t467 = ARIANE6_C(2.0) * t324;
-    const ariane6_real_t t468 = t17 * t367;
+    const ariane6_real_t t468 = t17 * t367; /* link j5: column of the mass matrix */
+    /* link j5: derivatives */
     const ariane6_real_t t469 = t17 * t467 - t11 * t466 - (t353 * t455 - t468 * t452);
     const ariane6_real_t t470 = t24 * t465 - t25 * t464;
-    const ariane6_real_t t471 = t11 * t367;
-    const ariane6_real_t t472 = t471 * t455 + t468 * t456 - t470;
-    const ariane6_real_t t473 = t1 * t353 - t3 * t471;
+    const ariane6_real_t t471 = t11 * t367; /* link j5: column of the mass matrix */
+    const ariane6_real_t t472 = t471 * t455 + t468 * t456 - t470; /* link j5: derivatives */
+    const ariane6_real_t t473 = t1 * t353 - t3 * t471; /* link j5: column of the mass matrix */
+    /* link j5: derivatives */
     const ariane6_real_t t474 = t1 * t469 + t3 * t472 + (t468 * t458 - t473 * t446);
-    const ariane6_real_t t475 = t1 * t471 + t3 * t353;
-    const ariane6_real_t t476 = t3 * t469 - t1 * t472 - t475 * t446;
+    const ariane6_real_t t475 = t1 * t471 + t3 * t353; /* link j5: column of the mass matrix */
+    const ariane6_real_t t476 = t3 * t469 - t1 * t472 - t475 * t446; /* link j5: derivatives */
     const ariane6_real_t t477 = t0 * t474 + t2 * t476 + (t2 * t475 + t0 * t473) * t442;
     input_by_dq[24] = t252 * t477;
-    const ariane6_real_t t478 = ARIANE6_C(2.0) * t315;
+    const ariane6_real_t t478 = ARIANE6_C(2.0) * t315; /* link j6: derivatives */
     const ariane6_real_t t479 = ARIANE6_C(-2.0) * t316;
     const ariane6_real_t t480 = t47 * t478 - t30 * t479;
     const ariane6_real_t t481 = ARIANE6_C(2.0) * t300;
     const ariane6_real_t t482 = t481 - (t294 * (ARIANE6_C(-0.6) * t26) + t288 * (ARIANE6_C(0.6) * t43));
     const ariane6_real_t t483 = t24 * t480 + t25 * t482;
     const ariane6_real_t t484 = t30 * t478 + t47 * t479;
-    const ariane6_real_t t485 = t24 * t294;
+    const ariane6_real_t t485 = t24 * t294; /* link j6: column of the mass matrix */
     const ariane6_real_t t486 = t11 * t288 - t17 * t485;
     const ariane6_real_t t487 = t25 * t294;
+    /* link j6: derivatives */
     const ariane6_real_t t488 = t17 * t484 - t11 * t483 - (t486 * t452 - t487 * t455);
     const ariane6_real_t t489 = t24 * t482 - t25 * t480;
-    const ariane6_real_t t490 = t11 * t485 + t17 * t288;
-    const ariane6_real_t t491 = t490 * t455 - t486 * t456 - t489;
-    const ariane6_real_t t492 = t3 * t490 + t1 * t487;
+    const ariane6_real_t t490 = t11 * t485 + t17 * t288; /* link j6: column of the mass matrix */
+    const ariane6_real_t t491 = t490 * t455 - t486 * t456 - t489; /* link j6: derivatives */
+    const ariane6_real_t t492 = t3 * t490 + t1 * t487; /* link j6: column of the mass matrix */
+    /* link j6: derivatives */
     const ariane6_real_t t493 = t1 * t488 + t3 * t491 + (t492 * t446 - t486 * t458);
-    const ariane6_real_t t494 = t1 * t490 - t3 * t487;
-    const ariane6_real_t t495 = t3 * t488 - t1 * t491 - t494 * t446;
+    const ariane6_real_t t494 = t1 * t490 - t3 * t487; /* link j6: column of the mass matrix */
+    const ariane6_real_t t495 = t3 * t488 - t1 * t491 - t494 * t446; /* link j6: derivatives */
     const ariane6_real_t t496 = t0 * t493 + t2 * t495 + (t2 * t494 - t0 * t492) * t442;
     input_by_dq[30] = ARIANE6_C(0.2) * t496;
+    /* link j6: inertia of it and all beyond */
     const ariane6_real_t t497 = t47 * t130 + parameters[XY6] * (ARIANE6_C(2.0) * t30);
     const ariane6_real_t t498 = t47 * t497;
     const ariane6_real_t t499 = ARIANE6_C(0.3) * (t309 + ARIANE6_C(-2.0) * parameters[MZ6]);
     const ariane6_real_t t500 = t498 - parameters[YY6] + t499 - parameters[XX5];
     const ariane6_real_t t501 = parameters[YY5] + parameters[ZZ6];
+    /* link j6: column of the mass matrix */
     const ariane6_real_t t502 = t30 * parameters[YZ6] - t47 * parameters[XZ6] + ARIANE6_C(0.3) * t288;
-    const ariane6_real_t t503 = t502 - parameters[XY5];
+    const ariane6_real_t t503 = t502 - parameters[XY5]; /* link j6: inertia of it and all beyond */
+    /* link j5: inertia of it and all beyond */
     const ariane6_real_t t504 = t503 * (ARIANE6_C(2.0) * t25) - t24 * (t500 + t501);
     const ariane6_real_t t505 = t24 * t504;
     const ariane6_real_t t506 = parameters[XX4] + (t501 + t505);
+    /* link j6: inertia of it and all beyond */
     const ariane6_real_t t507 = parameters[ZZ5] + (parameters[XX6] + t498 - t499);
-    const ariane6_real_t t508 = parameters[YY4] + t507;
+    const ariane6_real_t t508 = parameters[YY4] + t507; /* link j5: inertia of it and all beyond */
+    /* link j6: column of the mass matrix */
     const ariane6_real_t t509 = t30 * parameters[XZ6] + t47 * parameters[YZ6] + ARIANE6_C(-0.3) * t294;
-    const ariane6_real_t t510 = t509 - parameters[YZ5];
+    const ariane6_real_t t510 = t509 - parameters[YZ5]; /* link j6: inertia of it and all beyond */
     const ariane6_real_t t511 = parameters[XY6] - t30 * t497 - parameters[XZ5];
-    const ariane6_real_t t512 = t24 * t511 - t25 * t510;
-    const ariane6_real_t t513 = parameters[XY4] + t512;
+    const ariane6_real_t t512 = t24 * t511 - t25 * t510; /* link j5: column of the mass matrix */
+    const ariane6_real_t t513 = parameters[XY4] + t512; /* link j5: inertia of it and all beyond */
+    /* link j4: inertia of it and all beyond */
     const ariane6_real_t t514 = t11 * (t506 - t508) - t513 * (ARIANE6_C(2.0) * t17);
     const ariane6_real_t t515 = t11 * t514;
     const ariane6_real_t t516 = ARIANE6_C(0.488) * (t369 + ARIANE6_C(2.0) * t368);
     const ariane6_real_t t517 = parameters[XX3] + (t508 + t515 + t516);
-    const ariane6_real_t t518 = t500 + t505 - parameters[ZZ4];
+    const ariane6_real_t t518 = t500 + t505 - parameters[ZZ4]; /* link j5: inertia of it and all beyond */
+    /* link j4: inertia of it and all beyond */
     const ariane6_real_t t519 = ARIANE6_C(0.17) * (t358 + ARIANE6_C(2.0) * t355);
     const ariane6_real_t t520 = parameters[YY3] + (t519 - t518);
+    /* link j5: inertia of it and all beyond */
     const ariane6_real_t t521 = t503 - t25 * t504 - parameters[XZ4];
-    const ariane6_real_t t522 = t25 * t511 + t24 * t510;
-    const ariane6_real_t t523 = parameters[YZ4] + t522;
-    const ariane6_real_t t524 = t11 * t521 + t17 * t523;
+    const ariane6_real_t t522 = t25 * t511 + t24 * t510; /* link j5: column of the mass matrix */
+    const ariane6_real_t t523 = parameters[YZ4] + t522; /* link j5: inertia of it and all beyond */
+    const ariane6_real_t t524 = t11 * t521 + t17 * t523; /* link j4: column of the mass matrix */
+    /* link j4: inertia of it and all beyond */
     const ariane6_real_t t525 = t524 + (ARIANE6_C(-0.17) * t368 + ARIANE6_C(-0.488) * t359) - parameters[XY3];
+    /* link j3: inertia of it and all beyond */
     const ariane6_real_t t526 = t1 * (t517 - t520) - t525 * (ARIANE6_C(-2.0) * t3);
     const ariane6_real_t t527 = t1 * t526;
     const ariane6_real_t t528 = parameters[XX2] + (t520 + t527);
     const ariane6_real_t t529 = ARIANE6_C(0.685) * (t420 - ARIANE6_C(2.0) * t418);
     const ariane6_real_t t530 = parameters[YY2] + (t517 - t527 + t529);
     const ariane6_real_t t531 = parameters[XY2] + (t3 * t526 - t525 + ARIANE6_C(0.685) * t401);
+    /* link j2: inertia of it and all beyond */
     const ariane6_real_t t532 = t2 * (t2 * (t530 - t528) + t531 * (ARIANE6_C(2.0) * t0));
     const ariane6_real_t t533 = ARIANE6_C(0.18) * (parameters[M2] + t419) + ARIANE6_C(2.0) * (t0 * t440
         + t2 * t441);
     const ariane6_real_t t534 = ARIANE6_C(250.0) * (t197 * parameters[IA1]) + t194 * (parameters[ZZ1] + (t528
         + t532 + ARIANE6_C(0.18) * t533));
     input_by_ddq[0] = t534;
+    /* link j4: inertia of it and all beyond */
     const ariane6_real_t t535 = t513 + t17 * t514 + ARIANE6_C(0.17) * t364 - parameters[XZ3];
+    /* link j4: column of the mass matrix */
     const ariane6_real_t t536 = t17 * t521 - t11 * t523 + ARIANE6_C(0.488) * t364;
-    const ariane6_real_t t537 = parameters[YZ3] + t536;
-    const ariane6_real_t t538 = t1 * t535 + t3 * t537;
+    const ariane6_real_t t537 = parameters[YZ3] + t536; /* link j4: inertia of it and all beyond */
+    const ariane6_real_t t538 = t1 * t535 + t3 * t537; /* link j3: column of the mass matrix */
+    /* link j3: inertia of it and all beyond */
     const ariane6_real_t t539 = parameters[XZ2] + (ARIANE6_C(0.685) * t404 - t538);
-    const ariane6_real_t t540 = t3 * t535 - t1 * t537;
-    const ariane6_real_t t541 = t540 - parameters[YZ2];
-    const ariane6_real_t t542 = t0 * t539 - t2 * t541;
+    const ariane6_real_t t540 = t3 * t535 - t1 * t537; /* link j3: column of the mass matrix */
+    const ariane6_real_t t541 = t540 - parameters[YZ2]; /* link j3: inertia of it and all beyond */
+    const ariane6_real_t t542 = t0 * t539 - t2 * t541; /* link j2: column of the mass matrix */
     input_by_ddq[6] = t223 * t542;
-    const ariane6_real_t t543 = t0 * t538 + t2 * t540;
+    const ariane6_real_t t543 = t0 * t538 + t2 * t540; /* link j3: column of the mass matrix */
     input_by_ddq[12] = -(t237 * t543);
-    const ariane6_real_t t544 = t524 + ARIANE6_C(-0.488) * t355;
+    const ariane6_real_t t544 = t524 + ARIANE6_C(-0.488) * t355; /* link j4: column of the mass matrix */
     const ariane6_real_t t545 = t518 + ARIANE6_C(-0.17) * t355;
     const ariane6_real_t t546 = t3 * t545 - t1 * t544;
     const ariane6_real_t t547 = t3 * t544 + t1 * t545 + ARIANE6_C(0.685) * t355;
     const ariane6_real_t t548 = t0 * t546 - t2 * t547 + ARIANE6_C(-0.18) * t355;
     input_by_ddq[18] = ARIANE6_C(0.2) * t548;
+    /* link j5: column of the mass matrix */
     const ariane6_real_t t549 = t11 * t512 - t17 * t507 + ARIANE6_C(-0.488) * t468;
     const ariane6_real_t t550 = t522 + ARIANE6_C(-0.17) * t468;
     const ariane6_real_t t551 = t3 * t550 - t1 * t549;
     const ariane6_real_t t552 = t3 * t549 + t1 * t550 + ARIANE6_C(0.685) * t468;
     const ariane6_real_t t553 = t0 * t551 - t2 * t552 + ARIANE6_C(-0.18) * t468;
     input_by_ddq[24] = t252 * t553;
-    const ariane6_real_t t554 = t24 * t502 + t25 * parameters[ZZ6];
+    const ariane6_real_t t554 = t24 * t502 + t25 * parameters[ZZ6]; /* link j6: column of the mass matrix */
     const ariane6_real_t t555 = t11 * t554 + t17 * t509 + ARIANE6_C(0.488) * t486;
     const ariane6_real_t t556 = t25 * t502 - t24 * parameters[ZZ6];
     const ariane6_real_t t557 = t556 + ARIANE6_C(0.17) * t486;
@@ -786,7 +878,7 @@ int ariane6_inverse_dynamics_derivatives_standard(
     const ariane6_real_t t559 = t3 * t555 + t1 * t557 + ARIANE6_C(-0.685) * t486;
     const ariane6_real_t t560 = t0 * t558 - t2 * t559 + ARIANE6_C(0.18) * t486;
     input_by_ddq[30] = ARIANE6_C(0.2) * t560;
-    const ariane6_real_t t561 = ARIANE6_C(2.0) * t70;
+    const ariane6_real_t t561 = ARIANE6_C(2.0) * t70; /* link j2: derivatives */
     const ariane6_real_t t562 = ARIANE6_C(-2.0) * t75;
     const ariane6_real_t t563 = t410 * t561 + t416 * t562 + (t85 * t528 - t174 * t531 - t187 * t539);
     const ariane6_real_t t564 = t423 * t561 + t412 * t562 + (t85 * t531 - t174 * t530 + t187 * t541);
@@ -799,8 +891,10 @@ int ariane6_inverse_dynamics_derivatives_standard(
     const ariane6_real_t t570 = ARIANE6_C(1.0) / t222;
     const ariane6_real_t t571 = t570 * (ARIANE6_C(0.019697757607273984) * (t569 * (ARIANE6_C(0.5) * t568))
         + t220 * t223);
+    /* link j4: inertia of it and all beyond */
     const ariane6_real_t t572 = parameters[ZZ3] + (t506 - t515 + (t519 + t516));
-    const ariane6_real_t t573 = parameters[ZZ2] + (t572 + t529);
+    const ariane6_real_t t573 = parameters[ZZ2] + (t572 + t529); /* link j3: inertia of it and all beyond */
+    /* link j2: derivatives */
     const ariane6_real_t t574 = t85 * t539 + t174 * t541 - t187 * t573 + (t70 * t437 + t75 * t439);
     const ariane6_real_t t575 = t224 * (t224 * (t569 * (ARIANE6_C(0.5) * t224)));
     const ariane6_real_t t576 = t230 * (ARIANE6_C(1610.8178724000004) * (t224 * t575))
@@ -810,45 +904,60 @@ int ariane6_inverse_dynamics_derivatives_standard(
     const ariane6_real_t t579 = parameters[FV2] * (dq[1] * t578) + parameters[IA2] * (ddq[1] * t578 + t577);
     const ariane6_real_t t580 = ARIANE6_C(250.0) * t579 + t223 * (t574 - (t69 * t441 + t74 * t440));
     input_by_q[7] = t580 + t219 * t571;
-    const ariane6_real_t t581 = t572 + ARIANE6_C(-0.685) * t418;
+    const ariane6_real_t t581 = t572 + ARIANE6_C(-0.685) * t418; /* link j3: column of the mass matrix */
+    /* link j3: derivatives */
     const ariane6_real_t t582 = t70 * t447 - t75 * t448 + (t174 * t540 - t85 * t538 - t187 * t581);
     input_by_q[13] = t237 * (t582 + (t69 * t418 - t74 * t401));
-    const ariane6_real_t t583 = t536 + ARIANE6_C(-0.685) * t459;
+    const ariane6_real_t t583 = t536 + ARIANE6_C(-0.685) * t459; /* link j4: column of the mass matrix */
+    /* link j4: derivatives */
     const ariane6_real_t t584 = t70 * t460 - t75 * t462 + (t85 * t546 + t174 * t547 - t187 * t583);
     input_by_q[19] = ARIANE6_C(0.2) * (t584 + (t74 * t461 + t69 * t459));
+    /* link j5: column of the mass matrix */
     const ariane6_real_t t585 = t17 * t512 + t11 * t507 + (ARIANE6_C(-0.17) * t353 + ARIANE6_C(0.488) * t471);
     const ariane6_real_t t586 = t585 + ARIANE6_C(0.685) * t473;
+    /* link j5: derivatives */
     const ariane6_real_t t587 = t70 * t474 - t75 * t476 + (t85 * t551 + t174 * t552 - t187 * t586);
     input_by_q[25] = t252 * (t587 + (t74 * t475 - t69 * t473));
+    /* link j6: column of the mass matrix */
     const ariane6_real_t t588 = t17 * t554 - t11 * t509 + (ARIANE6_C(0.17) * t487 + ARIANE6_C(0.488) * t490);
     const ariane6_real_t t589 = t588 + ARIANE6_C(-0.685) * t492;
+    /* link j6: derivatives */
     const ariane6_real_t t590 = t70 * t493 - t75 * t495 + (t85 * t558 + t174 * t559 - t187 * t589);
     input_by_q[31] = ARIANE6_C(0.2) * (t590 + (t74 * t494 + t69 * t492));
     const ariane6_real_t t591 = t385 - parameters[ZZ3];
+    /* link j4: inertia, momentum beyond */
     const ariane6_real_t t592 = t339 + t430 + t364 * t360 - (t13 * parameters[YZ3] + t7 * t591);
     const ariane6_real_t t593 = t13 * parameters[XZ3] + t5 * t591 - (t364 * t371 - (t17 * t388 + t11 * t389));
     const ariane6_real_t t594 = parameters[ZZ2] - t414;
+    /* link j3: inertia, momentum beyond */
     const ariane6_real_t t595 = t70 * t594 - dq[1] * parameters[YZ2] + (t1 * t592 - t3 * t593);
+    /* link j2: derivatives */
     const ariane6_real_t t596 = t0 * (ARIANE6_C(2.0) * t595 + (t528 * t561 + t531 * t562));
+    /* link j3: inertia, momentum beyond */
     const ariane6_real_t t597 = dq[1] * parameters[XZ2] - t75 * t594 + (t3 * t592 + t1 * t593 - t404 * t402);
+    /* link j2: derivatives */
     const ariane6_real_t t598 = t2 * (ARIANE6_C(2.0) * t597 + (t531 * t561 + t530 * t562));
     const ariane6_real_t t599 = t596 + t598 + ARIANE6_C(0.18) * (t440 * t561 + t441 * t562);
     input_by_dq[1] = t194 * t599;
+    /* link j4: inertia, momentum beyond */
     const ariane6_real_t t600 = t378 - t374 + (t373 + (t341 - t323 + t366));
+    /* link j2: derivatives */
     const ariane6_real_t t601 = ARIANE6_C(2.0) * (t411 - t408 + (t407 + (t600 + t406)))
         + ARIANE6_C(2.0) * (t70 * t539 + t75 * t541);
     const ariane6_real_t t602 = ARIANE6_C(250.0) * (t226 * parameters[FV2]
         - parameters[IA2] * (t232 * (ARIANE6_C(2.0) * dq[1])));
     input_by_dq[7] = t602 + t223 * t601;
-    const ariane6_real_t t603 = ARIANE6_C(2.0) * t600;
+    const ariane6_real_t t603 = ARIANE6_C(2.0) * t600; /* link j3: derivatives */
     const ariane6_real_t t604 = t603 - t401 * t458 + ARIANE6_C(2.0) * (t75 * t540 - t70 * t538);
     input_by_dq[13] = t237 * t604;
-    const ariane6_real_t t605 = t17 * t450 + t11 * t451 + t364 * t452;
+    const ariane6_real_t t605 = t17 * t450 + t11 * t451 + t364 * t452; /* link j4: derivatives */
     const ariane6_real_t t606 = t605 + t461 * t458 + ARIANE6_C(2.0) * (t70 * t546 + t75 * t547);
     input_by_dq[19] = ARIANE6_C(0.2) * t606;
+    /* link j5: derivatives */
     const ariane6_real_t t607 = t17 * t466 + t11 * t467 + (t353 * t456 + t471 * t452);
     const ariane6_real_t t608 = t607 + t475 * t458 + ARIANE6_C(2.0) * (t70 * t551 + t75 * t552);
     input_by_dq[25] = t252 * t608;
+    /* link j6: derivatives */
     const ariane6_real_t t609 = t17 * t483 + t11 * t484 + (t490 * t452 - t487 * t456);
     const ariane6_real_t t610 = t609 + t494 * t458 + ARIANE6_C(2.0) * (t70 * t558 + t75 * t559);
     input_by_dq[31] = ARIANE6_C(0.2) * t610;
@@ -858,7 +967,7 @@ int ariane6_inverse_dynamics_derivatives_standard(
     input_by_ddq[19] = ARIANE6_C(0.2) * t583;
     input_by_ddq[25] = t252 * t586;
     input_by_ddq[31] = ARIANE6_C(0.2) * t589;
-    const ariane6_real_t t611 = ARIANE6_C(-2.0) * t7;
+    const ariane6_real_t t611 = ARIANE6_C(-2.0) * t7; /* link j3: derivatives */
     const ariane6_real_t t612 = ARIANE6_C(-2.0) * t5;
     const ariane6_real_t t613 = t31 * t517 + t12 * t525 + t179 * t535 - (t376 * t611 + t387 * t612);
     const ariane6_real_t t614 = t172 + (t613 - t79 * t404);
@@ -889,12 +998,16 @@ int ariane6_inverse_dynamics_derivatives_standard(
     const ariane6_real_t t635 = t236 * (ARIANE6_C(8377.600000000002) * t632) - t234 * t239;
     const ariane6_real_t t636 = parameters[FV3] * (dq[2] * t635) + parameters[IA3] * (ddq[2] * t635 + t634);
     input_by_q[14] = ARIANE6_C(250.0) * t636 + t631 + t212 * t630;
+    /* link j4: derivatives */
     const ariane6_real_t t637 = t7 * t453 + t5 * t457 + (t12 * t545 - t31 * t544 - t179 * t536);
     input_by_q[20] = ARIANE6_C(0.2) * (t637 + t93 * t364);
+    /* link j5: derivatives */
     const ariane6_real_t t638 = t7 * t469 + t5 * t472 + (t12 * t550 - t31 * t549 - t179 * t585);
     input_by_q[26] = t252 * (t638 + (t93 * t471 - t79 * t353));
+    /* link j6: derivatives */
     const ariane6_real_t t639 = t7 * t488 + t5 * t491 + (t12 * t557 - t31 * t555 - t179 * t588);
     input_by_q[32] = ARIANE6_C(0.2) * (t639 + (t93 * t490 + t79 * t487));
+    /* link j3: derivatives */
     const ariane6_real_t t640 = ARIANE6_C(2.0) * t592 - (t517 * t611 + t525 * t612);
     const ariane6_real_t t641 = ARIANE6_C(2.0) * t593 + (t525 * t611 + t520 * t612);
     const ariane6_real_t t642 = t400 * t611 - t399 * t612;
@@ -921,7 +1034,7 @@ int ariane6_inverse_dynamics_derivatives_standard(
     input_by_ddq[20] = ARIANE6_C(0.2) * t536;
     input_by_ddq[26] = t252 * t585;
     input_by_ddq[32] = ARIANE6_C(0.2) * t588;
-    const ariane6_real_t t652 = ARIANE6_C(2.0) * t35;
+    const ariane6_real_t t652 = ARIANE6_C(2.0) * t35; /* link j4: derivatives */
     const ariane6_real_t t653 = ARIANE6_C(-2.0) * t19;
     const ariane6_real_t t654 = t323 * t652 + t339 * t653 - (t18 * t506 + t38 * t513 - t206 * t521);
     const ariane6_real_t t655 = t150 + (t654 - t92 * t368);
@@ -947,10 +1060,13 @@ int ariane6_inverse_dynamics_derivatives_standard(
     input_by_q[15] = t237 * t671;
     const ariane6_real_t t673 = ARIANE6_C(0.2) * (t665 + (t664 + (t35 * t450 - t19 * t451)));
     input_by_q[21] = t673;
+    /* link j5: derivatives */
     const ariane6_real_t t674 = t35 * t466 - t19 * t467 + (t18 * t512 + t38 * t507 + t206 * t522);
     input_by_q[27] = t252 * (t674 + t100 * t367);
+    /* link j6: derivatives */
     const ariane6_real_t t675 = t35 * t483 - t19 * t484 + (t18 * t554 - t38 * t509 + t206 * t556);
     input_by_q[33] = ARIANE6_C(0.2) * (t675 + (t100 * t485 + t92 * t288));
+    /* link j4: derivatives */
     const ariane6_real_t t676 = ARIANE6_C(2.0) * t382 + (t506 * t652 + t513 * t653);
     const ariane6_real_t t677 = ARIANE6_C(-2.0) * t383 + (t513 * t652 + t508 * t653);
     const ariane6_real_t t678 = ARIANE6_C(-2.0) * t346 - t368 * t653;
@@ -980,7 +1096,7 @@ int ariane6_inverse_dynamics_derivatives_standard(
     input_by_ddq[27] = -(t252 * t522);
     const ariane6_real_t t692 = ARIANE6_C(-0.2) * t556;
     input_by_ddq[33] = t692;
-    const ariane6_real_t t693 = ARIANE6_C(2.0) * t26;
+    const ariane6_real_t t693 = ARIANE6_C(2.0) * t26; /* link j5: derivatives */
     const ariane6_real_t t694 = ARIANE6_C(2.0) * t27;
     const ariane6_real_t t695 = t302 * t693 - t318 * t694 + (t42 * t501 - t59 * t503 + t159 * t510);
     const ariane6_real_t t696 = t129 + (t695 + t104 * t349);
@@ -1024,8 +1140,10 @@ int ariane6_inverse_dynamics_derivatives_standard(
     const ariane6_real_t t728 = t24 * (ARIANE6_C(-3549.6000000000004) * t725) - t25 * t254;
     const ariane6_real_t t729 = parameters[FV5] * (dq[4] * t728) + parameters[IA5] * (ddq[4] * t728 + t727);
     input_by_q[28] = ARIANE6_C(250.0) * t729 + t724 + t146 * t723;
+    /* link j6: derivatives */
     const ariane6_real_t t730 = t26 * t482 - t27 * t480 + (t42 * parameters[ZZ6] - t59 * t502 + t159 * t509);
     input_by_q[34] = ARIANE6_C(0.2) * (t730 + t104 * t294);
+    /* link j5: derivatives */
     const ariane6_real_t t731 = ARIANE6_C(2.0) * t336 - (t500 * t694 + t503 * t693);
     const ariane6_real_t t732 = ARIANE6_C(2.0) * t337 + (t501 * t693 - t503 * t694);
     const ariane6_real_t t733 = t25 * t732 - t24 * t731;
@@ -1061,7 +1179,7 @@ int ariane6_inverse_dynamics_derivatives_standard(
     input_by_ddq[22] = ARIANE6_C(-0.2) * t522;
     input_by_ddq[28] = ARIANE6_C(250.0) * (t255 * parameters[IA5]) + t252 * t507;
     input_by_ddq[34] = ARIANE6_C(-0.2) * t509;
-    const ariane6_real_t t752 = ARIANE6_C(2.0) * t49;
+    const ariane6_real_t t752 = ARIANE6_C(2.0) * t49; /* link j6: derivatives */
     const ariane6_real_t t753 = ARIANE6_C(-2.0) * t54;
     const ariane6_real_t t754 = t278 * t752 + t285 * t753 - (t53 * parameters[XX6] - t48 * parameters[XY6]
         + t154 * parameters[XZ6]);

@@ -6,7 +6,7 @@
  * Arm ariane6, description ac2a59ce556c2f1c.
  * SPDX-License-Identifier: 0BSD
  *
- * Operations: 725 (396 mul, 329 add, 0 neg), 8 div, 4 sqrt, 12 trig, 6 other.
+ * Operations: 725 (396 mul, 329 add, 0 neg), 8 div, 4 sqrt, 12 trig, 6 other calls (sign, select and the like).
  *
  * @param[in]   q           [6]   [rad]      joint coordinates; norm at most 10000
  * @param[in]   dq          [6]   [rad/s]    joint velocities; norm at most 100000
@@ -106,11 +106,11 @@
  */
 #include "ariane6_private.h"
 
-#if ARIANE6_GENERATION != 0xBA206C14UL
+#if ARIANE6_GENERATION != 0x13CD28B3UL
 #error "ariane6.h and ariane6_inverse_dynamics_standard.c are of different generations: generate the arm again"
 #endif
 
-int ariane6_inverse_dynamics_standard(
+ariane6_status_t ariane6_inverse_dynamics_standard(
     const ariane6_real_t q[ARIANE6_N_JOINTS],
     const ariane6_real_t dq[ARIANE6_N_JOINTS],
     const ariane6_real_t ddq[ARIANE6_N_JOINTS],
@@ -121,7 +121,7 @@ int ariane6_inverse_dynamics_standard(
         M2, XX3, XY3, XZ3, YY3, YZ3, ZZ3, MX3, MY3, MZ3, M3, XX4, XY4, XZ4, YY4, YZ4, ZZ4, MX4, MY4, MZ4, M4,
         XX5, XY5, XZ5, YY5, YZ5, ZZ5, MX5, MY5, MZ5, M5, XX6, XY6, XZ6, YY6, YZ6, ZZ6, MX6, MY6, MZ6, M6, FV1,
         FC1, IA1, FV2, FC2, IA2, FV3, FC3, IA3, FV4, FC4, IA4, FV5, FC5, IA5, FV6, FC6, IA6 };
-    int status = ARIANE6_STATUS_OK;
+    ariane6_status_t status = ARIANE6_STATUS_OK;
 
     if (!ariane6_within_joints(q, ARIANE6_C(1.0e8))
         || !ariane6_within_joints(dq, ARIANE6_C(1.0e10))
@@ -152,44 +152,44 @@ int ariane6_inverse_dynamics_standard(
     ARIANE6_SINCOS(q[4], &t25, &t24);
     ariane6_real_t t30, t47;
     ARIANE6_SINCOS(q[5], &t30, &t47);
-    const ariane6_real_t t4 = t0 * t1 + t2 * t3;
+    const ariane6_real_t t4 = t0 * t1 + t2 * t3; /* link j3: motion */
     const ariane6_real_t t5 = dq[0] * t4;
     const ariane6_real_t t6 = t2 * t1 - t0 * t3;
     const ariane6_real_t t7 = dq[0] * t6;
     const ariane6_real_t t8 = t5 * t7;
     const ariane6_real_t t9 = ddq[1] + ddq[2];
-    const ariane6_real_t t10 = t8 - t9;
-    const ariane6_real_t t12 = ddq[0] * t4;
+    const ariane6_real_t t10 = t8 - t9; /* link j4: motion */
+    const ariane6_real_t t12 = ddq[0] * t4; /* link j3: motion */
     const ariane6_real_t t13 = dq[1] + dq[2];
     const ariane6_real_t t14 = t7 * t13;
     const ariane6_real_t t15 = t12 + t14;
-    const ariane6_real_t t16 = t14 + t15;
+    const ariane6_real_t t16 = t14 + t15; /* link j4: motion */
     const ariane6_real_t t18 = t17 * t16 - t11 * t10;
     const ariane6_real_t t19 = t11 * t5 - t17 * t13;
     const ariane6_real_t t20 = dq[3] + t7;
     const ariane6_real_t t21 = t19 * t20;
     const ariane6_real_t t22 = t18 + t21;
-    const ariane6_real_t t23 = ddq[4] + t22;
+    const ariane6_real_t t23 = ddq[4] + t22; /* link j5: motion */
     const ariane6_real_t t26 = t24 * t19 + t25 * t20;
     const ariane6_real_t t27 = t24 * t20 - t25 * t19;
     const ariane6_real_t t28 = t26 * t27;
-    const ariane6_real_t t29 = t23 - t28;
-    const ariane6_real_t t31 = ddq[0] * t6;
+    const ariane6_real_t t29 = t23 - t28; /* link j6: motion */
+    const ariane6_real_t t31 = ddq[0] * t6; /* link j3: motion */
     const ariane6_real_t t32 = t5 * t13;
     const ariane6_real_t t33 = t31 - t32;
-    const ariane6_real_t t34 = ddq[3] + t33;
+    const ariane6_real_t t34 = ddq[3] + t33; /* link j4: motion */
     const ariane6_real_t t35 = t17 * t5 + t11 * t13;
     const ariane6_real_t t36 = t19 * t35;
-    const ariane6_real_t t37 = t34 + t36;
-    const ariane6_real_t t38 = t17 * t10 + t11 * t16;
+    const ariane6_real_t t37 = t34 + t36; /* link j5: motion */
+    const ariane6_real_t t38 = t17 * t10 + t11 * t16; /* link j4: motion */
     const ariane6_real_t t39 = t35 * t20;
     const ariane6_real_t t40 = t39 - t38;
-    const ariane6_real_t t41 = t39 + t40;
+    const ariane6_real_t t41 = t39 + t40; /* link j5: motion */
     const ariane6_real_t t42 = t25 * t37 - t24 * t41;
     const ariane6_real_t t43 = dq[4] + t35;
     const ariane6_real_t t44 = t27 * t43;
     const ariane6_real_t t45 = t42 + t44;
-    const ariane6_real_t t46 = t44 + t45;
+    const ariane6_real_t t46 = t44 + t45; /* link j6: motion */
     const ariane6_real_t t48 = t30 * t29 - t47 * t46;
     const ariane6_real_t t49 = t30 * t26 + t47 * t43;
     const ariane6_real_t t50 = dq[5] + t27;
@@ -199,66 +199,70 @@ int ariane6_inverse_dynamics_standard(
     const ariane6_real_t t54 = t47 * t26 - t30 * t43;
     const ariane6_real_t t55 = t54 * t50;
     const ariane6_real_t t56 = t53 + t55;
-    const ariane6_real_t t57 = t55 + t56;
+    const ariane6_real_t t57 = t55 + t56; /* link j6: columns */
+    /* link j6: force and moment */
     const ariane6_real_t t58 = t51 * (parameters[YY6] - parameters[ZZ6]) - t52 * parameters[XX6]
         - t57 * parameters[XY6];
-    const ariane6_real_t t59 = t24 * t37 + t25 * t41;
+    const ariane6_real_t t59 = t24 * t37 + t25 * t41; /* link j5: motion */
     const ariane6_real_t t60 = t26 * t43;
     const ariane6_real_t t61 = t59 - t60;
-    const ariane6_real_t t62 = ddq[5] + t61;
+    const ariane6_real_t t62 = ddq[5] + t61; /* link j6: motion */
     const ariane6_real_t t63 = t54 * t49;
-    const ariane6_real_t t64 = t63 - t62;
-    const ariane6_real_t t65 = t49 * t49;
+    const ariane6_real_t t64 = t63 - t62; /* link j6: columns */
+    const ariane6_real_t t65 = t49 * t49; /* link j6: motion */
     const ariane6_real_t t66 = t50 * t50;
-    const ariane6_real_t t67 = dq[0] * dq[0];
-    const ariane6_real_t t68 = ARIANE6_C(0.18) * t67;
+    const ariane6_real_t t67 = dq[0] * dq[0]; /* link j1: motion */
+    const ariane6_real_t t68 = ARIANE6_C(0.18) * t67; /* link j2: motion */
     const ariane6_real_t t69 = t2 * t68 + ARIANE6_C(-9.81) * t0;
     const ariane6_real_t t70 = t2 * dq[0];
     const ariane6_real_t t71 = t70 * t70;
     const ariane6_real_t t72 = dq[1] * dq[1];
-    const ariane6_real_t t73 = t69 + ARIANE6_C(0.685) * (t71 + t72);
-    const ariane6_real_t t74 = t0 * t68 + ARIANE6_C(9.81) * t2;
+    const ariane6_real_t t73 = t69 + ARIANE6_C(0.685) * (t71 + t72); /* link j3: motion */
+    const ariane6_real_t t74 = t0 * t68 + ARIANE6_C(9.81) * t2; /* link j2: motion */
     const ariane6_real_t t75 = t0 * dq[0];
     const ariane6_real_t t76 = t75 * t70;
-    const ariane6_real_t t77 = ddq[1] + t76;
+    const ariane6_real_t t77 = ddq[1] + t76; /* link j3: motion */
     const ariane6_real_t t78 = t74 + ARIANE6_C(0.685) * t77;
     const ariane6_real_t t79 = t1 * t73 - t3 * t78;
     const ariane6_real_t t80 = t7 * t7;
     const ariane6_real_t t81 = t13 * t13;
-    const ariane6_real_t t82 = t80 + t81;
+    const ariane6_real_t t82 = t80 + t81; /* link j4: motion */
     const ariane6_real_t t83 = t79 - (ARIANE6_C(0.17) * t82 - ARIANE6_C(-0.488) * t10);
     const ariane6_real_t t84 = t33 - t32;
-    const ariane6_real_t t85 = t2 * ddq[0];
+    const ariane6_real_t t85 = t2 * ddq[0]; /* link j2: motion */
     const ariane6_real_t t86 = dq[1] * t75;
     const ariane6_real_t t87 = t85 - t86;
-    const ariane6_real_t t88 = t87 - t86;
-    const ariane6_real_t t89 = ARIANE6_C(-0.18) * ddq[0];
-    const ariane6_real_t t90 = t89 + ARIANE6_C(-0.685) * t88;
-    const ariane6_real_t t91 = t90 + (ARIANE6_C(0.17) * t84 + ARIANE6_C(0.488) * t16);
+    const ariane6_real_t t88 = t87 - t86; /* link j3: motion */
+    const ariane6_real_t t89 = ARIANE6_C(-0.18) * ddq[0]; /* link j2: motion */
+    const ariane6_real_t t90 = t89 + ARIANE6_C(-0.685) * t88; /* link j3: motion */
+    const ariane6_real_t t91 = t90 + (ARIANE6_C(0.17) * t84 + ARIANE6_C(0.488) * t16); /* link j4: motion */
     const ariane6_real_t t92 = t11 * t83 + t17 * t91;
-    const ariane6_real_t t93 = t3 * t73 + t1 * t78;
-    const ariane6_real_t t94 = t9 + t8;
-    const ariane6_real_t t95 = t5 * t5;
-    const ariane6_real_t t96 = t95 + t81;
+    const ariane6_real_t t93 = t3 * t73 + t1 * t78; /* link j3: motion */
+    const ariane6_real_t t94 = t9 + t8; /* link j4: motion */
+    const ariane6_real_t t95 = t5 * t5; /* link j3: motion */
+    const ariane6_real_t t96 = t95 + t81; /* link j4: motion */
     const ariane6_real_t t97 = t93 + (ARIANE6_C(-0.17) * t94 + ARIANE6_C(-0.488) * t96);
-    const ariane6_real_t t98 = t24 * t92 - t25 * t97;
-    const ariane6_real_t t99 = t98 + ARIANE6_C(0.3) * t29;
-    const ariane6_real_t t100 = t11 * t91 - t17 * t83;
-    const ariane6_real_t t101 = t100 + ARIANE6_C(0.3) * t46;
+    const ariane6_real_t t98 = t24 * t92 - t25 * t97; /* link j5: motion */
+    const ariane6_real_t t99 = t98 + ARIANE6_C(0.3) * t29; /* link j6: motion */
+    const ariane6_real_t t100 = t11 * t91 - t17 * t83; /* link j4: motion */
+    const ariane6_real_t t101 = t100 + ARIANE6_C(0.3) * t46; /* link j6: motion */
     const ariane6_real_t t102 = t30 * t99 - t47 * t101;
-    const ariane6_real_t t103 = t25 * t92 + t24 * t97;
+    const ariane6_real_t t103 = t25 * t92 + t24 * t97; /* link j5: motion */
     const ariane6_real_t t104 = t26 * t26;
     const ariane6_real_t t105 = t43 * t43;
-    const ariane6_real_t t106 = t104 + t105;
+    const ariane6_real_t t106 = t104 + t105; /* link j6: motion */
     const ariane6_real_t t107 = t103 + ARIANE6_C(-0.3) * t106;
+    /* link j6: force and moment */
     const ariane6_real_t t108 = (t65 - t66) * parameters[YZ6] + (t58 - t64 * parameters[XZ6])
         + (t107 * parameters[MY6] - t102 * parameters[MZ6]);
-    const ariane6_real_t t109 = t51 + t52;
+    const ariane6_real_t t109 = t51 + t52; /* link j6: columns */
+    /* link j6: force and moment */
     const ariane6_real_t t110 = t55 * (parameters[ZZ6] - parameters[XX6]) + t56 * parameters[YY6]
         + t109 * parameters[XY6];
-    const ariane6_real_t t111 = t62 + t63;
-    const ariane6_real_t t112 = t54 * t54;
+    const ariane6_real_t t111 = t62 + t63; /* link j6: columns */
+    const ariane6_real_t t112 = t54 * t54; /* link j6: motion */
     const ariane6_real_t t113 = t47 * t99 + t30 * t101;
+    /* link j6: force and moment */
     const ariane6_real_t t114 = (t112 - t66) * parameters[XZ6] + (t110 - t111 * parameters[YZ6])
         + (t113 * parameters[MZ6] + t107 * parameters[MX6]);
     const ariane6_real_t t115 = (t65 + t66) * parameters[MX6] + t111 * parameters[MY6]
@@ -267,130 +271,171 @@ int ariane6_inverse_dynamics_standard(
     const ariane6_real_t t117 = (t112 + t66) * parameters[MY6] + t64 * parameters[MX6]
         - t48 * parameters[MZ6];
     const ariane6_real_t t118 = t117 - t102 * parameters[M6];
-    const ariane6_real_t t119 = t30 * t116 + t47 * t118;
-    const ariane6_real_t t120 = t61 - t60;
+    const ariane6_real_t t119 = t30 * t116 + t47 * t118; /* link j6: what it passes on */
+    const ariane6_real_t t120 = t61 - t60; /* link j6: motion */
+    /* link j5: force and moment */
     const ariane6_real_t t121 = t45 * parameters[XX5] - t44 * (parameters[YY5] - parameters[ZZ5])
         + t120 * parameters[XY5];
-    const ariane6_real_t t122 = t23 + t28;
-    const ariane6_real_t t123 = t27 * t27;
+    const ariane6_real_t t122 = t23 + t28; /* link j6: motion */
+    const ariane6_real_t t123 = t27 * t27; /* link j5: motion */
+    /* link j5: force and moment */
     const ariane6_real_t t124 = (t123 - t105) * parameters[YZ5] + (t121 + t122 * parameters[XZ5])
         + (t100 * parameters[MY5] - t103 * parameters[MZ5]);
+    /* link j6: what it passes on */
     const ariane6_real_t t125 = t124 + (t47 * t108 + t30 * t114 + ARIANE6_C(0.3) * t119);
+    /* link j6: force and moment */
     const ariane6_real_t t126 = t63 * (parameters[XX6] - parameters[YY6]) + t62 * parameters[ZZ6]
         - t53 * parameters[YZ6];
     const ariane6_real_t t127 = (t112 - t65) * parameters[XY6] + (t126 - t48 * parameters[XZ6])
         + (t102 * parameters[MX6] + t113 * parameters[MY6]);
+    /* link j5: force and moment */
     const ariane6_real_t t128 = t60 * (parameters[XX5] - parameters[ZZ5]) + t61 * parameters[YY5]
         + t46 * parameters[XY5];
     const ariane6_real_t t129 = (t105 - t104) * parameters[XZ5] + (t128 + t29 * parameters[YZ5])
         - (t98 * parameters[MZ5] + t100 * parameters[MX5]);
-    const ariane6_real_t t130 = t129 + t127;
-    const ariane6_real_t t131 = t21 + t22;
+    const ariane6_real_t t130 = t129 + t127; /* link j6: what it passes on */
+    const ariane6_real_t t131 = t21 + t22; /* link j5: motion */
+    /* link j4: force and moment */
     const ariane6_real_t t132 = t39 * (parameters[YY4] - parameters[ZZ4]) - t40 * parameters[XX4]
         - t131 * parameters[XY4];
-    const ariane6_real_t t133 = t34 - t36;
-    const ariane6_real_t t134 = t35 * t35;
+    const ariane6_real_t t133 = t34 - t36; /* link j5: motion */
+    const ariane6_real_t t134 = t35 * t35; /* link j4: motion */
     const ariane6_real_t t135 = t20 * t20;
+    /* link j4: force and moment */
     const ariane6_real_t t136 = (t134 - t135) * parameters[YZ4] + (t132 + t133 * parameters[XZ4])
         + (t97 * parameters[MY4] + t100 * parameters[MZ4]);
-    const ariane6_real_t t137 = t136 + (t24 * t125 - t25 * t130);
-    const ariane6_real_t t138 = t30 * t118 - t47 * t116;
+    const ariane6_real_t t137 = t136 + (t24 * t125 - t25 * t130); /* link j5: what it passes on */
+    const ariane6_real_t t138 = t30 * t118 - t47 * t116; /* link j6: what it passes on */
+    /* link j5: force and moment */
     const ariane6_real_t t139 = t23 * parameters[ZZ5] - t28 * (parameters[XX5] - parameters[YY5])
         + t59 * parameters[YZ5];
     const ariane6_real_t t140 = (t104 - t123) * parameters[XY5] + (t139 + t42 * parameters[XZ5])
         + (t103 * parameters[MX5] + t98 * parameters[MY5]);
+    /* link j6: what it passes on */
     const ariane6_real_t t141 = t140 + (t47 * t114 - t30 * t108 + ARIANE6_C(-0.3) * t138);
+    /* link j4: force and moment */
     const ariane6_real_t t142 = t21 * (parameters[ZZ4] - parameters[XX4]) + t22 * parameters[YY4]
         + t41 * parameters[XY4];
-    const ariane6_real_t t143 = t19 * t19;
+    const ariane6_real_t t143 = t19 * t19; /* link j4: motion */
+    /* link j4: force and moment */
     const ariane6_real_t t144 = (t143 - t135) * parameters[XZ4] + (t142 - t37 * parameters[YZ4])
         + (t92 * parameters[MZ4] + t97 * parameters[MX4]);
-    const ariane6_real_t t145 = t144 + t141;
+    const ariane6_real_t t145 = t144 + t141; /* link j5: what it passes on */
+    /* link j5: force and moment */
     const ariane6_real_t t146 = t59 * parameters[MZ5] - ((t123 + t105) * parameters[MX5]
         + t29 * parameters[MY5]);
-    const ariane6_real_t t147 = t146 - t98 * parameters[M5] + t138;
+    const ariane6_real_t t147 = t146 - t98 * parameters[M5] + t138; /* link j6: what it passes on */
+    /* link j5: force and moment */
     const ariane6_real_t t148 = t103 * parameters[M5] - (t106 * parameters[MY5] - t122 * parameters[MX5]
         + t42 * parameters[MZ5]);
+    /* link j6: force and moment */
     const ariane6_real_t t149 = (t112 + t65) * parameters[MZ6] - (t57 * parameters[MX6]
         - t109 * parameters[MY6]);
-    const ariane6_real_t t150 = t148 + (t107 * parameters[M6] - t149);
+    const ariane6_real_t t150 = t148 + (t107 * parameters[M6] - t149); /* link j6: what it passes on */
+    /* link j4: force and moment */
     const ariane6_real_t t151 = (t134 + t135) * parameters[MX4] + t37 * parameters[MY4]
         + t18 * parameters[MZ4];
+    /* link j5: what it passes on */
     const ariane6_real_t t152 = t24 * t147 - t25 * t150 - (t92 * parameters[M4] + t151);
+    /* link j5: force and moment */
     const ariane6_real_t t153 = (t104 + t123) * parameters[MZ5] - (t46 * parameters[MY5]
         - t120 * parameters[MX5]);
+    /* link j4: force and moment */
     const ariane6_real_t t154 = (t143 + t135) * parameters[MY4] - t133 * parameters[MX4]
         + t38 * parameters[MZ4];
+    /* link j5: what it passes on */
     const ariane6_real_t t155 = t153 - t100 * parameters[M5] - t119 - (t100 * parameters[M4] + t154);
-    const ariane6_real_t t156 = t17 * t152 + t11 * t155;
+    const ariane6_real_t t156 = t17 * t152 + t11 * t155; /* link j4: what it passes on */
+    /* link j3: force and moment */
     const ariane6_real_t t157 = t15 * parameters[XX3] - t14 * (parameters[YY3] - parameters[ZZ3])
         + t84 * parameters[XY3];
     const ariane6_real_t t158 = t90 * parameters[MY3] - t93 * parameters[MZ3] + ((t80 - t81) * parameters[YZ3]
         + (t157 + t94 * parameters[XZ3]));
+    /* link j4: what it passes on */
     const ariane6_real_t t159 = t158 + (t11 * t137 + t17 * t145 + ARIANE6_C(-0.488) * t156);
+    /* link j4: force and moment */
     const ariane6_real_t t160 = t36 * (parameters[XX4] - parameters[YY4]) + t34 * parameters[ZZ4]
         - t18 * parameters[YZ4];
     const ariane6_real_t t161 = (t143 - t134) * parameters[XY4] + (t160 + t38 * parameters[XZ4])
         + (t92 * parameters[MY4] - t100 * parameters[MX4]);
-    const ariane6_real_t t162 = t161 + (t25 * t125 + t24 * t130);
+    const ariane6_real_t t162 = t161 + (t25 * t125 + t24 * t130); /* link j5: what it passes on */
+    /* link j3: force and moment */
     const ariane6_real_t t163 = t32 * (parameters[XX3] - parameters[ZZ3]) + t33 * parameters[YY3]
         + t16 * parameters[XY3];
     const ariane6_real_t t164 = t79 * parameters[MZ3] + t90 * parameters[MX3] + ((t95 - t81) * parameters[XZ3]
         - (t163 - t10 * parameters[YZ3]));
-    const ariane6_real_t t165 = t164 - (t162 + ARIANE6_C(-0.17) * t156);
-    const ariane6_real_t t166 = dq[1] * t70;
+    const ariane6_real_t t165 = t164 - (t162 + ARIANE6_C(-0.17) * t156); /* link j4: what it passes on */
+    const ariane6_real_t t166 = dq[1] * t70; /* link j2: motion */
     const ariane6_real_t t167 = t0 * ddq[0];
     const ariane6_real_t t168 = t167 + t166;
+    /* link j2: force and moment */
     const ariane6_real_t t169 = t166 * (parameters[ZZ2] - parameters[YY2]) + t168 * parameters[XX2]
         + t88 * parameters[XY2];
     const ariane6_real_t t170 = (t71 - t72) * parameters[YZ2] + (t169 + t77 * parameters[XZ2])
         + (t89 * parameters[MY2] - t74 * parameters[MZ2]);
+    /* link j3: force and moment */
     const ariane6_real_t t171 = (t95 + t80) * parameters[MZ3] + (t84 * parameters[MX3]
         - t16 * parameters[MY3]);
-    const ariane6_real_t t172 = t171 - t90 * parameters[M3] + t156;
-    const ariane6_real_t t173 = t166 + t168;
+    const ariane6_real_t t172 = t171 - t90 * parameters[M3] + t156; /* link j4: what it passes on */
+    const ariane6_real_t t173 = t166 + t168; /* link j3: motion */
+    /* link j2: force and moment */
     const ariane6_real_t t174 = t86 * (parameters[XX2] - parameters[ZZ2]) + t87 * parameters[YY2]
         + t173 * parameters[XY2];
-    const ariane6_real_t t175 = t75 * t75;
+    const ariane6_real_t t175 = t75 * t75; /* link j2: motion */
+    /* link j2: force and moment */
     const ariane6_real_t t176 = (t72 - t175) * parameters[XZ2] + (t174 + (ddq[1] - t76) * parameters[YZ2]);
+    /* link j3: what it passes on */
     const ariane6_real_t t177 = t176 - (t69 * parameters[MZ2] + t89 * parameters[MX2]) + (t3 * t159
         - t1 * t165 + ARIANE6_C(0.685) * t172);
+    /* link j2: what it passes on */
     const ariane6_real_t t178 = t0 * (t170 + (t1 * t159 + t3 * t165)) + t2 * t177;
+    /* link j2: force and moment */
     const ariane6_real_t t179 = (t175 + t71) * parameters[MZ2] + (t88 * parameters[MX2]
         - t173 * parameters[MY2]);
+    /* link j2: what it passes on */
     const ariane6_real_t t180 = ddq[0] * parameters[ZZ1] + (t178 + ARIANE6_C(0.18) * (t179
         - t89 * parameters[M2] + t172));
+    /* joint j1: drive */
     const ariane6_real_t t182 = ARIANE6_SQRT(ARIANE6_C(0.0406334) * t181 + ARIANE6_C(0.10828541));
     const ariane6_real_t t184 = ARIANE6_C(0.061525739908548135) * t182 / t183;
     const ariane6_real_t t185 = ARIANE6_C(-1.0) / t182;
     const ariane6_real_t t186 = t183 * (ARIANE6_C(-4063.3400000000006) * t185);
     const ariane6_real_t t187 = t186 * dq[0];
-    const ariane6_real_t t188 = ariane6_sign(t187);
+    const ariane6_real_t t188 = ariane6_sign(t187); /* joint j1: coulomb_friction */
+    /* joint j1: drive */
     const ariane6_real_t t189 = ARIANE6_C(-4063.3400000000006) * t181
         + ARIANE6_C(-82.55365977800001) * (t185 * t185) * (t183 * t183);
     const ariane6_real_t t190 = t187 * parameters[FV1] + t188 * parameters[FC1] + (t186 * ddq[0]
         - t185 * t189 * t67) * parameters[IA1];
     out[0] = ARIANE6_C(250.0) * t190 + t184 * t180;
-    const ariane6_real_t t191 = t11 * t152 - t17 * t155;
+    const ariane6_real_t t191 = t11 * t152 - t17 * t155; /* link j4: what it passes on */
+    /* link j4: force and moment */
     const ariane6_real_t t192 = t131 * parameters[MX4] - t41 * parameters[MY4] - (t143
         + t134) * parameters[MZ4];
+    /* link j5: what it passes on */
     const ariane6_real_t t193 = t97 * parameters[M4] + t192 + (t25 * t147 + t24 * t150);
+    /* link j4: what it passes on */
     const ariane6_real_t t194 = t11 * t145 - t17 * t137 + (ARIANE6_C(-0.17) * t193
         + ARIANE6_C(-0.488) * t191);
+    /* link j3: force and moment */
     const ariane6_real_t t195 = t9 * parameters[ZZ3] - t8 * (parameters[XX3] - parameters[YY3])
         + t31 * parameters[YZ3];
     const ariane6_real_t t196 = t93 * parameters[MX3] + t79 * parameters[MY3] + ((t95 - t80) * parameters[XY3]
         + (t195 + t12 * parameters[XZ3]));
-    const ariane6_real_t t197 = t196 + t194;
+    const ariane6_real_t t197 = t196 + t194; /* link j4: what it passes on */
+    /* link j3: force and moment */
     const ariane6_real_t t198 = t10 * parameters[MY3] - t82 * parameters[MX3] + t31 * parameters[MZ3]
         - t79 * parameters[M3];
     const ariane6_real_t t199 = t93 * parameters[M3] + (t94 * parameters[MX3] - t96 * parameters[MY3]
         - t12 * parameters[MZ3]);
+    /* link j3: what it passes on */
     const ariane6_real_t t200 = ARIANE6_C(0.685) * (t3 * (t198 + t191) + t1 * (t199 + t193));
+    /* link j2: force and moment */
     const ariane6_real_t t201 = t76 * (parameters[YY2] - parameters[XX2]) + ddq[1] * parameters[ZZ2]
         + t85 * parameters[YZ2];
     const ariane6_real_t t202 = t74 * parameters[MX2] + t69 * parameters[MY2] + ((t175
         - t71) * parameters[XY2] + (t201 + t167 * parameters[XZ2]));
+    /* joint j2: drive */
     const ariane6_real_t t203 = ARIANE6_C(0.766044443118978) * t2 - ARIANE6_C(0.6427876096865393) * t0;
     const ariane6_real_t t204 = ARIANE6_SQRT(ARIANE6_C(-0.126918) * t203 + ARIANE6_C(0.420682));
     const ariane6_real_t t205 = ARIANE6_C(0.766044443118978) * t0 + ARIANE6_C(0.6427876096865393) * t2;
@@ -398,12 +443,14 @@ int ariane6_inverse_dynamics_standard(
     const ariane6_real_t t207 = ARIANE6_C(1.0) / t204;
     const ariane6_real_t t208 = t205 * (ARIANE6_C(12691.800000000003) * t207);
     const ariane6_real_t t209 = t208 * dq[1];
-    const ariane6_real_t t210 = ariane6_sign(t209);
+    const ariane6_real_t t210 = ariane6_sign(t209); /* joint j2: coulomb_friction */
+    /* joint j2: drive */
     const ariane6_real_t t211 = ARIANE6_C(12691.800000000003) * t203
         + ARIANE6_C(-805.4089362000002) * (t207 * t207) * (t205 * t205);
     const ariane6_real_t t212 = t209 * parameters[FV2] + t210 * parameters[FC2] + (t208 * ddq[1]
         + t207 * t211 * t72) * parameters[IA2];
     out[1] = ARIANE6_C(250.0) * t212 + t206 * (t202 + (t197 + t200));
+    /* joint j3: drive */
     const ariane6_real_t t213 = ARIANE6_C(0.052335956242943966) * t1 + ARIANE6_C(0.9986295347545738) * t3;
     const ariane6_real_t t214 = ARIANE6_SQRT(ARIANE6_C(-0.083776) * t213 + ARIANE6_C(0.38408000000000003));
     const ariane6_real_t t215 = ARIANE6_C(0.052335956242943966) * t3 - ARIANE6_C(0.9986295347545738) * t1;
@@ -411,30 +458,35 @@ int ariane6_inverse_dynamics_standard(
     const ariane6_real_t t217 = ARIANE6_C(1.0) / t214;
     const ariane6_real_t t218 = t215 * (ARIANE6_C(8377.600000000002) * t217);
     const ariane6_real_t t219 = t218 * dq[2];
-    const ariane6_real_t t220 = ariane6_sign(t219);
+    const ariane6_real_t t220 = ariane6_sign(t219); /* joint j3: coulomb_friction */
+    /* joint j3: drive */
     const ariane6_real_t t221 = ARIANE6_C(8377.600000000002) * t213
         + ARIANE6_C(-350.9209088000001) * (t217 * t217) * (t215 * t215);
+    /* joint j3: drive_inertia */
     const ariane6_real_t t222 = (t218 * ddq[2] + t217 * t221 * (dq[2] * dq[2])) * parameters[IA3];
     const ariane6_real_t t223 = ARIANE6_C(250.0) * (t219 * parameters[FV3] + t220 * parameters[FC3] + t222)
         + t216 * t197;
     out[2] = t223;
-    const ariane6_real_t t224 = ariane6_sign(dq[3]);
+    const ariane6_real_t t224 = ariane6_sign(dq[3]); /* joint j4: coulomb_friction */
     const ariane6_real_t t225 = ARIANE6_C(1.0e2) * dq[3] * parameters[FV4] + t224 * parameters[FC4]
         + ARIANE6_C(1.0e2) * ddq[3] * parameters[IA4];
     out[3] = ARIANE6_C(20.0) * t225 + ARIANE6_C(0.2) * t162;
+    /* joint j5: drive */
     const ariane6_real_t t226 = ARIANE6_SQRT(ARIANE6_C(0.035496) * t25 + ARIANE6_C(0.097));
     const ariane6_real_t t227 = ARIANE6_C(0.07043047103899029) * t226 / t24;
     const ariane6_real_t t228 = ARIANE6_C(-1.0) / t226;
     const ariane6_real_t t229 = t24 * (ARIANE6_C(-3549.6000000000004) * t228);
     const ariane6_real_t t230 = t229 * dq[4];
-    const ariane6_real_t t231 = ariane6_sign(t230);
+    const ariane6_real_t t231 = ariane6_sign(t230); /* joint j5: coulomb_friction */
+    /* joint j5: drive */
     const ariane6_real_t t232 = ARIANE6_C(-3549.6000000000004) * t25
         + ARIANE6_C(-62.9983008) * (t228 * t228) * (t24 * t24);
+    /* joint j5: drive_inertia */
     const ariane6_real_t t233 = (t229 * ddq[4] - t228 * t232 * (dq[4] * dq[4])) * parameters[IA5];
     const ariane6_real_t t234 = ARIANE6_C(250.0) * (t230 * parameters[FV5] + t231 * parameters[FC5] + t233)
         + t227 * t141;
     out[4] = t234;
-    const ariane6_real_t t235 = ariane6_sign(dq[5]);
+    const ariane6_real_t t235 = ariane6_sign(dq[5]); /* joint j6: coulomb_friction */
     const ariane6_real_t t236 = ARIANE6_C(1.0e2) * dq[5] * parameters[FV6] + t235 * parameters[FC6]
         + ARIANE6_C(1.0e2) * ddq[5] * parameters[IA6];
     out[5] = ARIANE6_C(20.0) * t236 + ARIANE6_C(0.2) * t127;

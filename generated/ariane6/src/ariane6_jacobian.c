@@ -22,15 +22,15 @@
  */
 #include "ariane6_private.h"
 
-#if ARIANE6_GENERATION != 0xBA206C14UL
+#if ARIANE6_GENERATION != 0x13CD28B3UL
 #error "ariane6.h and ariane6_jacobian.c are of different generations: generate the arm again"
 #endif
 
-int ariane6_jacobian(
+ariane6_status_t ariane6_jacobian(
     const ariane6_real_t q[ARIANE6_N_JOINTS],
     ariane6_real_t out[6 * ARIANE6_N_JOINTS])
 {
-    int status = ARIANE6_STATUS_OK;
+    ariane6_status_t status = ARIANE6_STATUS_OK;
 
     if (!ariane6_within_joints(q, ARIANE6_C(1.0e8))) {
         status |= ARIANE6_STATUS_INPUT;
@@ -50,43 +50,43 @@ int ariane6_jacobian(
     ARIANE6_SINCOS(q[3], &t13, &t11);
     ariane6_real_t t14, t15;
     ARIANE6_SINCOS(q[4], &t14, &t15);
-    const ariane6_real_t t2 = t0 * t1;
+    const ariane6_real_t t2 = t0 * t1; /* link j2: pose */
     const ariane6_real_t t5 = t0 * t4;
-    const ariane6_real_t t7 = t3 * t2 - t6 * t5;
+    const ariane6_real_t t7 = t3 * t2 - t6 * t5; /* link j3: pose */
     const ariane6_real_t t8 = t6 * t2 + t3 * t5;
-    const ariane6_real_t t9 = ARIANE6_C(-0.18) * t0;
-    const ariane6_real_t t10 = t9 + ARIANE6_C(-0.685) * t2;
-    const ariane6_real_t t16 = t14 * (t11 * t7 + t12 * t13) + t15 * t8;
-    const ariane6_real_t t17 = ARIANE6_C(0.3) * t16;
+    const ariane6_real_t t9 = ARIANE6_C(-0.18) * t0; /* link j2: pose */
+    const ariane6_real_t t10 = t9 + ARIANE6_C(-0.685) * t2; /* link j3: pose */
+    const ariane6_real_t t16 = t14 * (t11 * t7 + t12 * t13) + t15 * t8; /* link j5: pose */
+    const ariane6_real_t t17 = ARIANE6_C(0.3) * t16; /* link j6: pose */
     const ariane6_real_t t18 = t10 + (ARIANE6_C(0.17) * t7 + ARIANE6_C(0.488) * t8) + t17;
     out[0] = t18;
-    const ariane6_real_t t19 = t4 * t3 + t1 * t6;
+    const ariane6_real_t t19 = t4 * t3 + t1 * t6; /* link j3: motion */
     const ariane6_real_t t20 = t1 * t3 - t4 * t6;
-    const ariane6_real_t t21 = ARIANE6_C(0.685) * t4;
-    const ariane6_real_t t22 = t15 * t20 - t14 * (t11 * t19);
-    const ariane6_real_t t23 = ARIANE6_C(-0.3) * t22;
+    const ariane6_real_t t21 = ARIANE6_C(0.685) * t4; /* link j3: pose */
+    const ariane6_real_t t22 = t15 * t20 - t14 * (t11 * t19); /* link j5: velocities by those of the joints */
+    const ariane6_real_t t23 = ARIANE6_C(-0.3) * t22; /* link j6: pose */
     const ariane6_real_t t24 = ARIANE6_C(0.17) * t19 + ARIANE6_C(-0.488) * t20 - t21 + t23;
     out[1] = t12 * t24;
     const ariane6_real_t t25 = t21 + t24;
     out[2] = t12 * t25;
     out[3] = t8 * t23 + t20 * t17;
-    const ariane6_real_t t26 = t13 * t7 - t12 * t11;
-    const ariane6_real_t t27 = t13 * t19;
+    const ariane6_real_t t26 = t13 * t7 - t12 * t11; /* link j4: pose */
+    const ariane6_real_t t27 = t13 * t19; /* link j4: velocities by those of the joints */
     out[4] = t27 * t17 - t26 * t23;
-    const ariane6_real_t t28 = t12 * t1;
+    const ariane6_real_t t28 = t12 * t1; /* link j2: pose */
     const ariane6_real_t t29 = t12 * t4;
-    const ariane6_real_t t30 = t6 * t29 - t3 * t28;
+    const ariane6_real_t t30 = t6 * t29 - t3 * t28; /* link j3: pose */
     const ariane6_real_t t31 = t6 * t28 + t3 * t29;
-    const ariane6_real_t t32 = ARIANE6_C(-0.18) * t12;
-    const ariane6_real_t t33 = ARIANE6_C(0.685) * t28 - t32;
-    const ariane6_real_t t34 = t14 * (t11 * t30 + t0 * t13) - t15 * t31;
-    const ariane6_real_t t35 = ARIANE6_C(0.3) * t34;
+    const ariane6_real_t t32 = ARIANE6_C(-0.18) * t12; /* link j2: pose */
+    const ariane6_real_t t33 = ARIANE6_C(0.685) * t28 - t32; /* link j3: pose */
+    const ariane6_real_t t34 = t14 * (t11 * t30 + t0 * t13) - t15 * t31; /* link j5: pose */
+    const ariane6_real_t t35 = ARIANE6_C(0.3) * t34; /* link j6: pose */
     const ariane6_real_t t36 = t33 + (ARIANE6_C(0.17) * t30 + ARIANE6_C(-0.488) * t31) + t35;
     out[6] = t36;
     out[7] = t0 * t24;
     out[8] = t0 * t25;
     out[9] = t20 * t35 - t31 * t23;
-    const ariane6_real_t t37 = t0 * t11 - t13 * t30;
+    const ariane6_real_t t37 = t0 * t11 - t13 * t30; /* link j4: pose */
     out[10] = t27 * t35 + t37 * t23;
     out[13] = t0 * (t9 - t18) + t12 * (t32 + t36);
     out[14] = t0 * (t10 - t18) + t12 * (t36 - t33);

@@ -29,11 +29,11 @@
  */
 #include "ariane6_private.h"
 
-#if ARIANE6_GENERATION != 0xBA206C14UL
+#if ARIANE6_GENERATION != 0x13CD28B3UL
 #error "ariane6.h and ariane6_joint_from_motor.c are of different generations: generate the arm again"
 #endif
 
-int ariane6_joint_from_motor(
+ariane6_status_t ariane6_joint_from_motor(
     const ariane6_real_t q_m[ARIANE6_N_JOINTS],
     const ariane6_real_t dq_m[ARIANE6_N_JOINTS],
     const ariane6_real_t ddq_m[ARIANE6_N_JOINTS],
@@ -41,7 +41,7 @@ int ariane6_joint_from_motor(
     ariane6_real_t dq[ARIANE6_N_JOINTS],
     ariane6_real_t ddq[ARIANE6_N_JOINTS])
 {
-    int status = ARIANE6_STATUS_OK;
+    ariane6_status_t status = ARIANE6_STATUS_OK;
 
     if (!ariane6_within_joints(q_m, ARIANE6_C(1.0e18))
         || !ariane6_within_joints(dq_m, ARIANE6_C(1.0e18))

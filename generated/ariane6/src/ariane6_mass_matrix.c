@@ -80,11 +80,11 @@
  */
 #include "ariane6_private.h"
 
-#if ARIANE6_GENERATION != 0xBA206C14UL
+#if ARIANE6_GENERATION != 0x13CD28B3UL
 #error "ariane6.h and ariane6_mass_matrix.c are of different generations: generate the arm again"
 #endif
 
-int ariane6_mass_matrix(
+ariane6_status_t ariane6_mass_matrix(
     const ariane6_real_t q[ARIANE6_N_JOINTS],
     const ariane6_real_t parameters[ARIANE6_N_PARAMETERS],
     ariane6_real_t out[ARIANE6_N_JOINTS * ARIANE6_N_JOINTS])
@@ -92,7 +92,7 @@ int ariane6_mass_matrix(
     enum { ZZ1R = 0, XX2R, XY2, XZ2R, YZ2, ZZ2R, MX2R, MY2, XX3R, XY3R, XZ3, YZ3, ZZ3R, MX3R, MY3R, XX4R, XY4,
         XZ4, YZ4, ZZ4R, MX4, MY4R, XX5R, XY5, XZ5, YZ5, ZZ5R, MX5, MY5R, XX6R, XY6, XZ6R, YZ6R, ZZ6, MX6, MY6,
         FV1, FC1, IA1, FV2, FC2, IA2, FV3, FC3, IA3, FV4, FC4, IA4, FV5, FC5, IA5, FV6, FC6, IA6 };
-    int status = ARIANE6_STATUS_OK;
+    ariane6_status_t status = ARIANE6_STATUS_OK;
 
     if (!ariane6_within_joints(q, ARIANE6_C(1.0e8))
         || !ARIANE6_PARAMETERS_USABLE(ariane6_within(parameters, 54, ARIANE6_C(1.0e18)))) {
@@ -121,82 +121,98 @@ int ariane6_mass_matrix(
     ARIANE6_SINCOS(q[4], &t8, &t5);
     ariane6_real_t t1, t0;
     ARIANE6_SINCOS(q[5], &t1, &t0);
+    /* link j6: inertia of it and all beyond */
     const ariane6_real_t t2 = parameters[XY6] * (ARIANE6_C(2.0) * t1) - t0 * parameters[XX6R];
     const ariane6_real_t t3 = t0 * t2;
     const ariane6_real_t t4 = parameters[XX5R] - t3;
+    /* link j6: column of the mass matrix */
     const ariane6_real_t t6 = t0 * parameters[XZ6R] - t1 * parameters[YZ6R];
-    const ariane6_real_t t7 = parameters[XY5] + t6;
+    const ariane6_real_t t7 = parameters[XY5] + t6; /* link j6: inertia of it and all beyond */
+    /* link j5: inertia of it and all beyond */
     const ariane6_real_t t9 = t5 * (parameters[ZZ6] - t4) + t7 * (ARIANE6_C(2.0) * t8);
     const ariane6_real_t t10 = t5 * t9;
     const ariane6_real_t t11 = parameters[ZZ4R] + (t4 + t10);
+    /* link j6: column of the mass matrix */
     const ariane6_real_t t12 = t0 * parameters[MY6] + t1 * parameters[MX6];
-    const ariane6_real_t t13 = parameters[MY4R] + t12;
+    const ariane6_real_t t13 = parameters[MY4R] + t12; /* link j5: inertia of it and all beyond */
+    /* link j6: column of the mass matrix */
     const ariane6_real_t t15 = t1 * parameters[MY6] - t0 * parameters[MX6];
-    const ariane6_real_t t16 = t15 - parameters[MX5];
-    const ariane6_real_t t17 = t8 * parameters[MY5R] + t5 * t16;
-    const ariane6_real_t t18 = parameters[MX4] - t17;
-    const ariane6_real_t t20 = t14 * t13 - t19 * t18;
-    const ariane6_real_t t21 = ARIANE6_C(0.34) * t20;
+    const ariane6_real_t t16 = t15 - parameters[MX5]; /* link j6: inertia of it and all beyond */
+    const ariane6_real_t t17 = t8 * parameters[MY5R] + t5 * t16; /* link j5: column of the mass matrix */
+    const ariane6_real_t t18 = parameters[MX4] - t17; /* link j5: inertia of it and all beyond */
+    const ariane6_real_t t20 = t14 * t13 - t19 * t18; /* link j4: column of the mass matrix */
+    const ariane6_real_t t21 = ARIANE6_C(0.34) * t20; /* link j4: inertia of it and all beyond */
     const ariane6_real_t t22 = t11 + t21;
+    /* link j5: inertia of it and all beyond */
     const ariane6_real_t t23 = parameters[XX4R] + (parameters[ZZ6] - t10);
+    /* link j6: inertia of it and all beyond */
     const ariane6_real_t t24 = parameters[ZZ5R] + (parameters[XX6R] + t3);
     const ariane6_real_t t25 = parameters[XZ5] + (t1 * t2 - parameters[XY6]);
+    /* link j6: column of the mass matrix */
     const ariane6_real_t t26 = t1 * parameters[XZ6R] + t0 * parameters[YZ6R];
-    const ariane6_real_t t27 = parameters[YZ5] - t26;
-    const ariane6_real_t t28 = t5 * t25 - t8 * t27;
-    const ariane6_real_t t29 = t28 - parameters[XY4];
+    const ariane6_real_t t27 = parameters[YZ5] - t26; /* link j6: inertia of it and all beyond */
+    const ariane6_real_t t28 = t5 * t25 - t8 * t27; /* link j5: column of the mass matrix */
+    const ariane6_real_t t29 = t28 - parameters[XY4]; /* link j5: inertia of it and all beyond */
+    /* link j4: inertia of it and all beyond */
     const ariane6_real_t t30 = t19 * (t24 - t23) - t29 * (ARIANE6_C(2.0) * t14);
     const ariane6_real_t t31 = t19 * t30;
-    const ariane6_real_t t32 = t8 * t16 - t5 * parameters[MY5R];
-    const ariane6_real_t t33 = ARIANE6_C(-0.976) * t32;
+    const ariane6_real_t t32 = t8 * t16 - t5 * parameters[MY5R]; /* link j5: column of the mass matrix */
+    const ariane6_real_t t33 = ARIANE6_C(-0.976) * t32; /* link j4: inertia of it and all beyond */
     const ariane6_real_t t34 = parameters[XX3R] + (t24 - t31 + t33);
-    const ariane6_real_t t36 = parameters[XZ4] + (t7 - t8 * t9);
-    const ariane6_real_t t37 = t8 * t25 + t5 * t27;
-    const ariane6_real_t t38 = t37 - parameters[YZ4];
-    const ariane6_real_t t39 = t19 * t36 + t14 * t38;
+    const ariane6_real_t t36 = parameters[XZ4] + (t7 - t8 * t9); /* link j5: inertia of it and all beyond */
+    const ariane6_real_t t37 = t8 * t25 + t5 * t27; /* link j5: column of the mass matrix */
+    const ariane6_real_t t38 = t37 - parameters[YZ4]; /* link j5: inertia of it and all beyond */
+    const ariane6_real_t t39 = t19 * t36 + t14 * t38; /* link j4: column of the mass matrix */
     const ariane6_real_t t40 = ARIANE6_C(0.488) * t20;
+    /* link j4: inertia of it and all beyond */
     const ariane6_real_t t41 = parameters[XY3R] + (t39 + (t40 + ARIANE6_C(-0.17) * t32));
+    /* link j3: inertia of it and all beyond */
     const ariane6_real_t t43 = t35 * (t22 - t34) + t41 * (ARIANE6_C(2.0) * t42);
     const ariane6_real_t t44 = t35 * t43;
-    const ariane6_real_t t45 = parameters[MX3R] - t20;
+    const ariane6_real_t t45 = parameters[MX3R] - t20; /* link j4: inertia of it and all beyond */
     const ariane6_real_t t46 = t32 - parameters[MY3R];
-    const ariane6_real_t t47 = t42 * t46 + t35 * t45;
-    const ariane6_real_t t48 = ARIANE6_C(1.37) * t47;
+    const ariane6_real_t t47 = t42 * t46 + t35 * t45; /* link j3: column of the mass matrix */
+    const ariane6_real_t t48 = ARIANE6_C(1.37) * t47; /* link j3: inertia of it and all beyond */
     const ariane6_real_t t49 = parameters[XX2R] + (t22 - t44);
-    const ariane6_real_t t51 = t35 * t46 - t42 * t45;
+    const ariane6_real_t t51 = t35 * t46 - t42 * t45; /* link j3: column of the mass matrix */
+    /* link j2: inertia of it and all beyond */
     const ariane6_real_t t53 = (parameters[XY2] + (t41 - t42 * t43
         + ARIANE6_C(0.685) * t51)) * (ARIANE6_C(2.0) * t52);
     const ariane6_real_t t54 = t50 * (t50 * (t34 + t44 + t48 - t49) + t53);
     const ariane6_real_t t55 = ARIANE6_C(0.36) * (t52 * (t51 - parameters[MY2]) + t50 * (parameters[MX2R]
         + t47));
+    /* joint j1: drive */
     const ariane6_real_t t57 = ARIANE6_SQRT(ARIANE6_C(0.0406334) * t56 + ARIANE6_C(0.10828541));
     const ariane6_real_t t58 = ARIANE6_C(1.0) / t57;
     const ariane6_real_t t60 = t59 * (ARIANE6_C(4063.3400000000006) * t58);
     const ariane6_real_t t61 = parameters[ZZ1R] + (t49 + t54 + t55) + parameters[IA1] * (t60 * t60);
     out[0] = t61;
-    const ariane6_real_t t62 = t19 * t13 + t14 * t18;
+    const ariane6_real_t t62 = t19 * t13 + t14 * t18; /* link j4: column of the mass matrix */
+    /* link j4: inertia of it and all beyond */
     const ariane6_real_t t63 = parameters[XZ3] + (t29 + t14 * t30 + ARIANE6_C(-0.17) * t62);
+    /* link j4: column of the mass matrix */
     const ariane6_real_t t64 = t19 * t38 - t14 * t36 + ARIANE6_C(0.488) * t62;
-    const ariane6_real_t t65 = parameters[YZ3] + t64;
-    const ariane6_real_t t66 = t35 * t63 - t42 * t65;
+    const ariane6_real_t t65 = parameters[YZ3] + t64; /* link j4: inertia of it and all beyond */
+    const ariane6_real_t t66 = t35 * t63 - t42 * t65; /* link j3: column of the mass matrix */
     const ariane6_real_t t67 = t42 * t63 + t35 * t65;
+    /* link j2: column of the mass matrix */
     const ariane6_real_t t68 = t52 * (parameters[XZ2R] + (t66 + ARIANE6_C(0.685) * t62))
         + t50 * (parameters[YZ2] + t67);
     out[1] = t68;
-    const ariane6_real_t t69 = t52 * t66 + t50 * t67;
+    const ariane6_real_t t69 = t52 * t66 + t50 * t67; /* link j3: column of the mass matrix */
     out[2] = t69;
-    const ariane6_real_t t70 = t39 + t40;
+    const ariane6_real_t t70 = t39 + t40; /* link j4: column of the mass matrix */
     const ariane6_real_t t71 = t11 + ARIANE6_C(0.17) * t20;
     const ariane6_real_t t72 = t50 * (t42 * t70 + t35 * t71 + ARIANE6_C(-0.685) * t20);
     const ariane6_real_t t73 = t52 * (t35 * t70 - t42 * t71) + t72 + ARIANE6_C(-0.18) * t20;
     out[3] = t73;
-    const ariane6_real_t t74 = t14 * t32;
+    const ariane6_real_t t74 = t14 * t32; /* link j5: column of the mass matrix */
     const ariane6_real_t t75 = t19 * t28 + t14 * t24 + ARIANE6_C(-0.488) * t74;
     const ariane6_real_t t76 = t37 + ARIANE6_C(-0.17) * t74;
     const ariane6_real_t t77 = t50 * (t42 * t75 + t35 * t76 + ARIANE6_C(0.685) * t74);
     const ariane6_real_t t78 = t52 * (t35 * t75 - t42 * t76) + t77 + ARIANE6_C(0.18) * t74;
     out[4] = t78;
-    const ariane6_real_t t79 = t5 * t6 - t8 * parameters[ZZ6];
+    const ariane6_real_t t79 = t5 * t6 - t8 * parameters[ZZ6]; /* link j6: column of the mass matrix */
     const ariane6_real_t t80 = t5 * t12;
     const ariane6_real_t t81 = t14 * t80 + t19 * t15;
     const ariane6_real_t t82 = t19 * t79 - t14 * t26 + ARIANE6_C(0.488) * t81;
@@ -206,28 +222,31 @@ int ariane6_mass_matrix(
     const ariane6_real_t t86 = t52 * (t35 * t82 - t42 * t84) + t85 + ARIANE6_C(-0.18) * t81;
     out[5] = t86;
     out[6] = t68;
+    /* link j4: inertia of it and all beyond */
     const ariane6_real_t t87 = parameters[ZZ3R] + (t23 + t31 + (t21 + t33));
+    /* joint j2: drive */
     const ariane6_real_t t88 = ARIANE6_SQRT(ARIANE6_C(0.126918) * (ARIANE6_C(-0.766044443118978) * t50
         + ARIANE6_C(0.6427876096865393) * t52) + ARIANE6_C(0.420682));
     const ariane6_real_t t89 = ARIANE6_C(1.0) / t88;
     const ariane6_real_t t90 = (ARIANE6_C(0.766044443118978) * t52
         + ARIANE6_C(0.6427876096865393) * t50) * (ARIANE6_C(12691.800000000003) * t89);
     out[7] = parameters[ZZ2R] + (t87 + t48) + parameters[IA2] * (t90 * t90);
-    const ariane6_real_t t91 = t87 + ARIANE6_C(0.685) * t47;
+    const ariane6_real_t t91 = t87 + ARIANE6_C(0.685) * t47; /* link j3: column of the mass matrix */
     out[8] = t91;
-    const ariane6_real_t t92 = t64 + ARIANE6_C(-0.685) * (t42 * t62);
+    const ariane6_real_t t92 = t64 + ARIANE6_C(-0.685) * (t42 * t62); /* link j4: column of the mass matrix */
     out[9] = t92;
-    const ariane6_real_t t93 = t19 * t32;
+    const ariane6_real_t t93 = t19 * t32; /* link j5: column of the mass matrix */
     const ariane6_real_t t94 = t19 * t24 - t14 * t28 + (ARIANE6_C(0.17) * t17 + ARIANE6_C(-0.488) * t93);
     const ariane6_real_t t95 = t94 + ARIANE6_C(0.685) * (t42 * t93 - t35 * t17);
     out[10] = t95;
-    const ariane6_real_t t96 = t19 * t80 - t14 * t15;
+    const ariane6_real_t t96 = t19 * t80 - t14 * t15; /* link j6: column of the mass matrix */
     const ariane6_real_t t97 = t8 * t12;
     const ariane6_real_t t98 = ARIANE6_C(0.17) * t97 + ARIANE6_C(0.488) * t96 - (t14 * t79 + t19 * t26);
     const ariane6_real_t t99 = t98 + ARIANE6_C(-0.685) * (t42 * t96 + t35 * t97);
     out[11] = t99;
     out[12] = t69;
     out[13] = t91;
+    /* joint j3: drive */
     const ariane6_real_t t100 = ARIANE6_SQRT(ARIANE6_C(0.083776) * (ARIANE6_C(-0.052335956242943966) * t35
         + ARIANE6_C(-0.9986295347545738) * t42) + ARIANE6_C(0.38408000000000003));
     const ariane6_real_t t101 = ARIANE6_C(1.0) / t100;
@@ -247,6 +266,7 @@ int ariane6_mass_matrix(
     out[25] = t95;
     out[26] = t94;
     out[27] = t37;
+    /* joint j5: drive */
     const ariane6_real_t t103 = ARIANE6_SQRT(ARIANE6_C(0.035496) * t8 + ARIANE6_C(0.097));
     const ariane6_real_t t104 = ARIANE6_C(1.0) / t103;
     const ariane6_real_t t105 = t5 * (ARIANE6_C(3549.6000000000004) * t104);

@@ -104,11 +104,11 @@
  */
 #include "ariane6_private.h"
 
-#if ARIANE6_GENERATION != 0xBA206C14UL
+#if ARIANE6_GENERATION != 0x13CD28B3UL
 #error "ariane6.h and ariane6_mass_matrix_standard.c are of different generations: generate the arm again"
 #endif
 
-int ariane6_mass_matrix_standard(
+ariane6_status_t ariane6_mass_matrix_standard(
     const ariane6_real_t q[ARIANE6_N_JOINTS],
     const ariane6_real_t parameters[ARIANE6_N_STANDARD_PARAMETERS],
     ariane6_real_t out[ARIANE6_N_JOINTS * ARIANE6_N_JOINTS])
@@ -117,7 +117,7 @@ int ariane6_mass_matrix_standard(
         M2, XX3, XY3, XZ3, YY3, YZ3, ZZ3, MX3, MY3, MZ3, M3, XX4, XY4, XZ4, YY4, YZ4, ZZ4, MX4, MY4, MZ4, M4,
         XX5, XY5, XZ5, YY5, YZ5, ZZ5, MX5, MY5, MZ5, M5, XX6, XY6, XZ6, YY6, YZ6, ZZ6, MX6, MY6, MZ6, M6, FV1,
         FC1, IA1, FV2, FC2, IA2, FV3, FC3, IA3, FV4, FC4, IA4, FV5, FC5, IA5, FV6, FC6, IA6 };
-    int status = ARIANE6_STATUS_OK;
+    ariane6_status_t status = ARIANE6_STATUS_OK;
 
     if (!ariane6_within_joints(q, ARIANE6_C(1.0e8))
         || !ARIANE6_PARAMETERS_USABLE(ariane6_within(parameters, 78, ARIANE6_C(1.0e18)))) {
@@ -146,6 +146,7 @@ int ariane6_mass_matrix_standard(
     ARIANE6_SINCOS(q[4], &t12, &t8);
     ariane6_real_t t1, t0;
     ARIANE6_SINCOS(q[5], &t1, &t0);
+    /* link j6: inertia of it and all beyond */
     const ariane6_real_t t2 = t0 * (parameters[YY6] - parameters[XX6])
         + parameters[XY6] * (ARIANE6_C(2.0) * t1);
     const ariane6_real_t t3 = t0 * t2;
@@ -153,87 +154,101 @@ int ariane6_mass_matrix_standard(
     const ariane6_real_t t5 = ARIANE6_C(0.3) * (t4 + ARIANE6_C(2.0) * parameters[MZ6]);
     const ariane6_real_t t6 = parameters[XX5] + (parameters[YY6] - t3 + t5);
     const ariane6_real_t t7 = parameters[YY5] + parameters[ZZ6];
+    /* link j6: column of the mass matrix */
     const ariane6_real_t t9 = t1 * parameters[MY6] - t0 * parameters[MX6];
     const ariane6_real_t t10 = t0 * parameters[XZ6] - t1 * parameters[YZ6] + ARIANE6_C(0.3) * t9;
-    const ariane6_real_t t11 = parameters[XY5] + t10;
+    const ariane6_real_t t11 = parameters[XY5] + t10; /* link j6: inertia of it and all beyond */
+    /* link j5: inertia of it and all beyond */
     const ariane6_real_t t13 = t8 * (t7 - t6) + t11 * (ARIANE6_C(2.0) * t12);
     const ariane6_real_t t14 = t8 * t13;
     const ariane6_real_t t15 = parameters[XX4] + (t7 - t14);
+    /* link j6: inertia of it and all beyond */
     const ariane6_real_t t16 = parameters[ZZ5] + (parameters[XX6] + t3 + t5);
-    const ariane6_real_t t17 = parameters[YY4] + t16;
+    const ariane6_real_t t17 = parameters[YY4] + t16; /* link j5: inertia of it and all beyond */
+    /* link j6: column of the mass matrix */
     const ariane6_real_t t19 = t0 * parameters[MY6] + t1 * parameters[MX6];
     const ariane6_real_t t20 = ARIANE6_C(0.3) * t19 - (t1 * parameters[XZ6] + t0 * parameters[YZ6]);
-    const ariane6_real_t t21 = parameters[YZ5] + t20;
+    const ariane6_real_t t21 = parameters[YZ5] + t20; /* link j6: inertia of it and all beyond */
     const ariane6_real_t t22 = parameters[XZ5] + (t1 * t2 - parameters[XY6]);
-    const ariane6_real_t t23 = t8 * t22 - t12 * t21;
-    const ariane6_real_t t24 = t23 - parameters[XY4];
+    const ariane6_real_t t23 = t8 * t22 - t12 * t21; /* link j5: column of the mass matrix */
+    const ariane6_real_t t24 = t23 - parameters[XY4]; /* link j5: inertia of it and all beyond */
+    /* link j4: inertia of it and all beyond */
     const ariane6_real_t t26 = t18 * (t17 - t15) - t24 * (ARIANE6_C(2.0) * t25);
     const ariane6_real_t t27 = t18 * t26;
-    const ariane6_real_t t28 = t9 - parameters[MX5];
+    const ariane6_real_t t28 = t9 - parameters[MX5]; /* link j6: inertia of it and all beyond */
     const ariane6_real_t t29 = parameters[MY5] + (parameters[MZ6] + t4);
-    const ariane6_real_t t30 = t12 * t28 - t8 * t29;
-    const ariane6_real_t t31 = parameters[MZ4] - t30;
+    const ariane6_real_t t30 = t12 * t28 - t8 * t29; /* link j5: column of the mass matrix */
+    const ariane6_real_t t31 = parameters[MZ4] - t30; /* link j5: inertia of it and all beyond */
     const ariane6_real_t t32 = parameters[M4] + (parameters[M5] + parameters[M6]);
-    const ariane6_real_t t33 = ARIANE6_C(0.488) * t32;
+    const ariane6_real_t t33 = ARIANE6_C(0.488) * t32; /* link j4: inertia of it and all beyond */
     const ariane6_real_t t34 = ARIANE6_C(0.488) * (t33 + ARIANE6_C(2.0) * t31);
     const ariane6_real_t t35 = parameters[XX3] + (t17 - t27 + t34);
-    const ariane6_real_t t36 = parameters[ZZ4] + (t6 + t14);
+    const ariane6_real_t t36 = parameters[ZZ4] + (t6 + t14); /* link j5: inertia of it and all beyond */
     const ariane6_real_t t37 = parameters[MY4] + (t19 - parameters[MZ5]);
-    const ariane6_real_t t38 = t12 * t29 + t8 * t28;
-    const ariane6_real_t t39 = parameters[MX4] - t38;
-    const ariane6_real_t t40 = t25 * t37 - t18 * t39;
-    const ariane6_real_t t41 = ARIANE6_C(0.17) * t32;
+    const ariane6_real_t t38 = t12 * t29 + t8 * t28; /* link j5: column of the mass matrix */
+    const ariane6_real_t t39 = parameters[MX4] - t38; /* link j5: inertia of it and all beyond */
+    const ariane6_real_t t40 = t25 * t37 - t18 * t39; /* link j4: column of the mass matrix */
+    const ariane6_real_t t41 = ARIANE6_C(0.17) * t32; /* link j4: inertia of it and all beyond */
     const ariane6_real_t t42 = ARIANE6_C(0.17) * (t41 + ARIANE6_C(2.0) * t40);
     const ariane6_real_t t43 = parameters[YY3] + (t36 + t42);
+    /* link j5: inertia of it and all beyond */
     const ariane6_real_t t45 = parameters[XZ4] + (t11 - t12 * t13);
-    const ariane6_real_t t46 = t12 * t22 + t8 * t21;
-    const ariane6_real_t t47 = t46 - parameters[YZ4];
-    const ariane6_real_t t48 = t18 * t45 + t25 * t47;
-    const ariane6_real_t t49 = t40 + t41;
+    const ariane6_real_t t46 = t12 * t22 + t8 * t21; /* link j5: column of the mass matrix */
+    const ariane6_real_t t47 = t46 - parameters[YZ4]; /* link j5: inertia of it and all beyond */
+    const ariane6_real_t t48 = t18 * t45 + t25 * t47; /* link j4: column of the mass matrix */
+    const ariane6_real_t t49 = t40 + t41; /* link j4: inertia of it and all beyond */
     const ariane6_real_t t50 = parameters[XY3] + (t48 + (ARIANE6_C(0.17) * t31 + ARIANE6_C(0.488) * t49));
+    /* link j3: inertia of it and all beyond */
     const ariane6_real_t t52 = t44 * (t35 - t43) - t50 * (ARIANE6_C(2.0) * t51);
     const ariane6_real_t t53 = t44 * t52;
     const ariane6_real_t t54 = parameters[XX2] + (t43 + t53);
-    const ariane6_real_t t55 = parameters[MX3] - t49;
+    const ariane6_real_t t55 = parameters[MX3] - t49; /* link j4: inertia of it and all beyond */
     const ariane6_real_t t56 = parameters[MY3] + (t31 + t33);
-    const ariane6_real_t t57 = t44 * t55 - t51 * t56;
-    const ariane6_real_t t58 = parameters[M3] + t32;
-    const ariane6_real_t t59 = ARIANE6_C(0.685) * t58;
+    const ariane6_real_t t57 = t44 * t55 - t51 * t56; /* link j3: column of the mass matrix */
+    const ariane6_real_t t58 = parameters[M3] + t32; /* link j4: inertia of it and all beyond */
+    const ariane6_real_t t59 = ARIANE6_C(0.685) * t58; /* link j3: inertia of it and all beyond */
     const ariane6_real_t t60 = ARIANE6_C(0.685) * (t59 + ARIANE6_C(2.0) * t57);
-    const ariane6_real_t t62 = t44 * t56 + t51 * t55;
+    const ariane6_real_t t62 = t44 * t56 + t51 * t55; /* link j3: column of the mass matrix */
+    /* link j2: inertia of it and all beyond */
     const ariane6_real_t t64 = (parameters[XY2] + (t50 + t51 * t52
         + ARIANE6_C(-0.685) * t62)) * (ARIANE6_C(2.0) * t63);
     const ariane6_real_t t65 = t61 * (parameters[YY2] + (t35 - t53 + t60) - t54) + t64;
+    /* link j2: column of the mass matrix */
     const ariane6_real_t t66 = t61 * (parameters[MX2] + (t57 + t59)) - t63 * (parameters[MY2] + t62);
+    /* link j2: inertia of it and all beyond */
     const ariane6_real_t t67 = t54 + t61 * t65 + ARIANE6_C(0.18) * (ARIANE6_C(0.18) * (parameters[M2] + t58)
         + ARIANE6_C(2.0) * t66);
+    /* joint j1: drive */
     const ariane6_real_t t69 = ARIANE6_SQRT(ARIANE6_C(0.0406334) * t68 + ARIANE6_C(0.10828541));
     const ariane6_real_t t70 = ARIANE6_C(1.0) / t69;
     const ariane6_real_t t72 = t71 * (ARIANE6_C(4063.3400000000006) * t70);
     out[0] = parameters[ZZ1] + t67 + t72 * t72 * parameters[IA1];
-    const ariane6_real_t t73 = t18 * t37 + t25 * t39;
+    const ariane6_real_t t73 = t18 * t37 + t25 * t39; /* link j4: column of the mass matrix */
+    /* link j4: inertia of it and all beyond */
     const ariane6_real_t t74 = parameters[XZ3] + (t24 + t25 * t26 + ARIANE6_C(-0.17) * t73);
+    /* link j4: column of the mass matrix */
     const ariane6_real_t t75 = t18 * t47 - t25 * t45 + ARIANE6_C(0.488) * t73;
-    const ariane6_real_t t76 = parameters[YZ3] + t75;
-    const ariane6_real_t t77 = t44 * t74 - t51 * t76;
+    const ariane6_real_t t76 = parameters[YZ3] + t75; /* link j4: inertia of it and all beyond */
+    const ariane6_real_t t77 = t44 * t74 - t51 * t76; /* link j3: column of the mass matrix */
     const ariane6_real_t t78 = t51 * t74 + t44 * t76;
+    /* link j2: column of the mass matrix */
     const ariane6_real_t t79 = t63 * (parameters[XZ2] + (t77 + ARIANE6_C(0.685) * (t73 - parameters[MZ3])))
         + t61 * (parameters[YZ2] + t78);
     out[1] = t79;
-    const ariane6_real_t t80 = t63 * t77 + t61 * t78;
+    const ariane6_real_t t80 = t63 * t77 + t61 * t78; /* link j3: column of the mass matrix */
     out[2] = t80;
-    const ariane6_real_t t81 = t48 + ARIANE6_C(0.488) * t40;
+    const ariane6_real_t t81 = t48 + ARIANE6_C(0.488) * t40; /* link j4: column of the mass matrix */
     const ariane6_real_t t82 = t36 + ARIANE6_C(0.17) * t40;
     const ariane6_real_t t83 = t61 * (t51 * t81 + t44 * t82 + ARIANE6_C(-0.685) * t40);
     const ariane6_real_t t84 = t63 * (t44 * t81 - t51 * t82) + t83 + ARIANE6_C(-0.18) * t40;
     out[3] = t84;
-    const ariane6_real_t t85 = t25 * t30;
+    const ariane6_real_t t85 = t25 * t30; /* link j5: column of the mass matrix */
     const ariane6_real_t t86 = t18 * t23 + t25 * t16 + ARIANE6_C(-0.488) * t85;
     const ariane6_real_t t87 = t46 + ARIANE6_C(-0.17) * t85;
     const ariane6_real_t t88 = t61 * (t51 * t86 + t44 * t87 + ARIANE6_C(0.685) * t85);
     const ariane6_real_t t89 = t63 * (t44 * t86 - t51 * t87) + t88 + ARIANE6_C(0.18) * t85;
     out[4] = t89;
-    const ariane6_real_t t90 = t8 * t10 - t12 * parameters[ZZ6];
+    const ariane6_real_t t90 = t8 * t10 - t12 * parameters[ZZ6]; /* link j6: column of the mass matrix */
     const ariane6_real_t t91 = t8 * t19;
     const ariane6_real_t t92 = t25 * t91 + t18 * t9;
     const ariane6_real_t t93 = t18 * t90 + t25 * t20 + ARIANE6_C(0.488) * t92;
@@ -243,28 +258,32 @@ int ariane6_mass_matrix_standard(
     const ariane6_real_t t97 = t63 * (t44 * t93 - t51 * t95) + t96 + ARIANE6_C(-0.18) * t92;
     out[5] = t97;
     out[6] = t79;
+    /* link j4: inertia of it and all beyond */
     const ariane6_real_t t98 = parameters[ZZ3] + (t15 + t27 + (t42 + t34));
+    /* joint j2: drive */
     const ariane6_real_t t99 = ARIANE6_SQRT(ARIANE6_C(0.126918) * (ARIANE6_C(-0.766044443118978) * t61
         + ARIANE6_C(0.6427876096865393) * t63) + ARIANE6_C(0.420682));
     const ariane6_real_t t100 = ARIANE6_C(1.0) / t99;
     const ariane6_real_t t101 = (ARIANE6_C(0.766044443118978) * t63
         + ARIANE6_C(0.6427876096865393) * t61) * (ARIANE6_C(12691.800000000003) * t100);
     out[7] = parameters[ZZ2] + (t98 + t60) + t101 * t101 * parameters[IA2];
-    const ariane6_real_t t102 = t98 + ARIANE6_C(0.685) * t57;
+    const ariane6_real_t t102 = t98 + ARIANE6_C(0.685) * t57; /* link j3: column of the mass matrix */
     out[8] = t102;
+    /* link j4: column of the mass matrix */
     const ariane6_real_t t103 = t75 + ARIANE6_C(-0.685) * (t51 * t73);
     out[9] = t103;
-    const ariane6_real_t t104 = t18 * t30;
+    const ariane6_real_t t104 = t18 * t30; /* link j5: column of the mass matrix */
     const ariane6_real_t t105 = t18 * t16 - t25 * t23 + (ARIANE6_C(0.17) * t38 + ARIANE6_C(-0.488) * t104);
     const ariane6_real_t t106 = t105 + ARIANE6_C(0.685) * (t51 * t104 - t44 * t38);
     out[10] = t106;
-    const ariane6_real_t t107 = t18 * t91 - t25 * t9;
+    const ariane6_real_t t107 = t18 * t91 - t25 * t9; /* link j6: column of the mass matrix */
     const ariane6_real_t t108 = t12 * t19;
     const ariane6_real_t t109 = t18 * t20 - t25 * t90 + (ARIANE6_C(0.17) * t108 + ARIANE6_C(0.488) * t107);
     const ariane6_real_t t110 = t109 + ARIANE6_C(-0.685) * (t51 * t107 + t44 * t108);
     out[11] = t110;
     out[12] = t80;
     out[13] = t102;
+    /* joint j3: drive */
     const ariane6_real_t t111 = ARIANE6_SQRT(ARIANE6_C(0.083776) * (ARIANE6_C(-0.052335956242943966) * t44
         + ARIANE6_C(-0.9986295347545738) * t51) + ARIANE6_C(0.38408000000000003));
     const ariane6_real_t t112 = ARIANE6_C(1.0) / t111;
@@ -284,6 +303,7 @@ int ariane6_mass_matrix_standard(
     out[25] = t106;
     out[26] = t105;
     out[27] = t46;
+    /* joint j5: drive */
     const ariane6_real_t t114 = ARIANE6_SQRT(ARIANE6_C(0.035496) * t12 + ARIANE6_C(0.097));
     const ariane6_real_t t115 = ARIANE6_C(1.0) / t114;
     const ariane6_real_t t116 = t8 * (ARIANE6_C(3549.6000000000004) * t115);

@@ -29,11 +29,11 @@
  */
 #include "ariane6_private.h"
 
-#if ARIANE6_GENERATION != 0xBA206C14UL
+#if ARIANE6_GENERATION != 0x13CD28B3UL
 #error "ariane6.h and ariane6_motor_from_joint.c are of different generations: generate the arm again"
 #endif
 
-int ariane6_motor_from_joint(
+ariane6_status_t ariane6_motor_from_joint(
     const ariane6_real_t q[ARIANE6_N_JOINTS],
     const ariane6_real_t dq[ARIANE6_N_JOINTS],
     const ariane6_real_t ddq[ARIANE6_N_JOINTS],
@@ -41,7 +41,7 @@ int ariane6_motor_from_joint(
     ariane6_real_t dq_m[ARIANE6_N_JOINTS],
     ariane6_real_t ddq_m[ARIANE6_N_JOINTS])
 {
-    int status = ARIANE6_STATUS_OK;
+    ariane6_status_t status = ARIANE6_STATUS_OK;
 
     if (!ariane6_within_joints(q, ARIANE6_C(1.0e8))
         || !ariane6_within_joints(dq, ARIANE6_C(1.0e10))
@@ -69,44 +69,54 @@ int ariane6_motor_from_joint(
     ARIANE6_SINCOS(q[2], &t7, &t6);
     ariane6_real_t t10, t22;
     ARIANE6_SINCOS(q[4], &t10, &t22);
+    /* joint j1: drive */
     const ariane6_real_t t1 = ARIANE6_SQRT(ARIANE6_C(0.0406334) * t0 + ARIANE6_C(0.10828541));
     q_m[0] = ARIANE6_C(200000.00000000003) * t1 - ARIANE6_C(55820.000000000015);
+    /* joint j2: drive */
     const ariane6_real_t t4 = ARIANE6_C(0.766044443118978) * t2 - ARIANE6_C(0.6427876096865393) * t3;
     const ariane6_real_t t5 = ARIANE6_SQRT(ARIANE6_C(-0.126918) * t4 + ARIANE6_C(0.420682));
     q_m[1] = ARIANE6_C(200000.00000000003) * t5 - ARIANE6_C(119720.00000000001);
+    /* joint j3: drive */
     const ariane6_real_t t8 = ARIANE6_C(0.052335956242943966) * t6 + ARIANE6_C(0.9986295347545738) * t7;
     const ariane6_real_t t9 = ARIANE6_SQRT(ARIANE6_C(-0.083776) * t8 + ARIANE6_C(0.38408000000000003));
     q_m[2] = ARIANE6_C(200000.00000000003) * t9 - ARIANE6_C(113940.00000000001);
     q_m[3] = ARIANE6_C(1.0e2) * q[3];
+    /* joint j5: drive */
     const ariane6_real_t t11 = ARIANE6_SQRT(ARIANE6_C(0.035496) * t10 + ARIANE6_C(0.097));
     q_m[4] = ARIANE6_C(200000.00000000003) * t11 - ARIANE6_C(52280.000000000015);
     q_m[5] = ARIANE6_C(1.0e2) * q[5];
-    const ariane6_real_t t12 = ARIANE6_C(-1.0) / t1;
+    const ariane6_real_t t12 = ARIANE6_C(-1.0) / t1; /* joint j1: drive */
     const ariane6_real_t t14 = t13 * (ARIANE6_C(-4063.3400000000006) * t12);
     dq_m[0] = t14 * dq[0];
+    /* joint j2: drive */
     const ariane6_real_t t15 = ARIANE6_C(-0.766044443118978) * t3 + ARIANE6_C(-0.6427876096865393) * t2;
     const ariane6_real_t t16 = ARIANE6_C(1.0) / t5;
     const ariane6_real_t t17 = t15 * (ARIANE6_C(-12691.800000000003) * t16);
     dq_m[1] = t17 * dq[1];
+    /* joint j3: drive */
     const ariane6_real_t t18 = ARIANE6_C(-0.052335956242943966) * t7 + ARIANE6_C(0.9986295347545738) * t6;
     const ariane6_real_t t19 = ARIANE6_C(1.0) / t9;
     const ariane6_real_t t20 = t18 * (ARIANE6_C(-8377.600000000002) * t19);
     dq_m[2] = t20 * dq[2];
     dq_m[3] = ARIANE6_C(1.0e2) * dq[3];
-    const ariane6_real_t t21 = ARIANE6_C(-1.0) / t11;
+    const ariane6_real_t t21 = ARIANE6_C(-1.0) / t11; /* joint j5: drive */
     const ariane6_real_t t23 = t22 * (ARIANE6_C(-3549.6000000000004) * t21);
     dq_m[4] = t23 * dq[4];
     dq_m[5] = ARIANE6_C(1.0e2) * dq[5];
+    /* joint j1: drive */
     const ariane6_real_t t24 = ARIANE6_C(-4063.3400000000006) * t0
         + ARIANE6_C(-82.55365977800001) * (t12 * t12) * (t13 * t13);
     ddq_m[0] = t14 * ddq[0] - t12 * t24 * (dq[0] * dq[0]);
+    /* joint j2: drive */
     const ariane6_real_t t25 = ARIANE6_C(12691.800000000003) * t4
         + ARIANE6_C(-805.4089362000002) * (t16 * t16) * (t15 * t15);
     ddq_m[1] = t17 * ddq[1] + t16 * t25 * (dq[1] * dq[1]);
+    /* joint j3: drive */
     const ariane6_real_t t26 = ARIANE6_C(8377.600000000002) * t8
         + ARIANE6_C(-350.9209088000001) * (t19 * t19) * (t18 * t18);
     ddq_m[2] = t20 * ddq[2] + t19 * t26 * (dq[2] * dq[2]);
     ddq_m[3] = ARIANE6_C(1.0e2) * ddq[3];
+    /* joint j5: drive */
     const ariane6_real_t t27 = ARIANE6_C(-3549.6000000000004) * t10
         + ARIANE6_C(-62.9983008) * (t21 * t21) * (t22 * t22);
     ddq_m[4] = t23 * ddq[4] - t21 * t27 * (dq[4] * dq[4]);

@@ -6,7 +6,7 @@
  * Arm ariane6, description ac2a59ce556c2f1c.
  * SPDX-License-Identifier: 0BSD
  *
- * Operations: 817 (530 mul, 281 add, 6 neg), 8 div, 4 sqrt, 12 trig, 6 other.
+ * Operations: 817 (530 mul, 281 add, 6 neg), 8 div, 4 sqrt, 12 trig, 6 other calls (sign, select and the like).
  *
  * @param[in]   q    [6]    [rad]                          joint coordinates; norm at most 10000
  * @param[in]   dq   [6]    [rad/s]                        joint velocities; norm at most 100000
@@ -32,7 +32,7 @@
  */
 #include "ariane6_private.h"
 
-#if ARIANE6_GENERATION != 0xBA206C14UL
+#if ARIANE6_GENERATION != 0x13CD28B3UL
 #error "ariane6.h and ariane6_regressor_packed.c are of different generations: generate the arm again"
 #endif
 
@@ -53,13 +53,13 @@ const unsigned short ariane6_regressor_columns[ARIANE6_N_PACKED] = {
     27, 28, 29, 30, 31, 32, 33, 34, 35, 48, 49, 50, 29, 30, 31, 32, 33, 34, 35, 51, 52, 53
 };
 
-int ariane6_regressor_packed(
+ariane6_status_t ariane6_regressor_packed(
     const ariane6_real_t q[ARIANE6_N_JOINTS],
     const ariane6_real_t dq[ARIANE6_N_JOINTS],
     const ariane6_real_t ddq[ARIANE6_N_JOINTS],
     ariane6_real_t out[ARIANE6_N_PACKED])
 {
-    int status = ARIANE6_STATUS_OK;
+    ariane6_status_t status = ARIANE6_STATUS_OK;
 
     if (!ariane6_within_joints(q, ARIANE6_C(1.0e8))
         || !ariane6_within_joints(dq, ARIANE6_C(1.0e10))
@@ -89,33 +89,35 @@ int ariane6_regressor_packed(
     ARIANE6_SINCOS(q[4], &t135, &t136);
     ariane6_real_t t188, t189;
     ARIANE6_SINCOS(q[5], &t188, &t189);
+    /* joint j1: drive */
     const ariane6_real_t t1 = ARIANE6_SQRT(ARIANE6_C(0.0406334) * t0 + ARIANE6_C(0.10828541));
     const ariane6_real_t t3 = ARIANE6_C(0.061525739908548135) * t1 / t2;
     out[0] = t3 * ddq[0];
-    const ariane6_real_t t5 = t4 * dq[0];
+    const ariane6_real_t t5 = t4 * dq[0]; /* link j2: motion */
     const ariane6_real_t t6 = dq[1] * t5;
     const ariane6_real_t t8 = t7 * ddq[0];
     const ariane6_real_t t9 = t6 + t8;
-    const ariane6_real_t t10 = t7 * t3;
-    const ariane6_real_t t11 = t7 * dq[0];
+    const ariane6_real_t t10 = t7 * t3; /* link j2: velocities by those of the joints */
+    const ariane6_real_t t11 = t7 * dq[0]; /* link j2: motion */
     const ariane6_real_t t12 = dq[1] * t11;
-    const ariane6_real_t t13 = t4 * t3;
-    const ariane6_real_t t14 = t12 * t13;
+    const ariane6_real_t t13 = t4 * t3; /* link j2: velocities by those of the joints */
+    const ariane6_real_t t14 = t12 * t13; /* link j2: columns */
     out[1] = t9 * t10 + t14;
+    /* joint j2: drive */
     const ariane6_real_t t15 = ARIANE6_C(0.766044443118978) * t4 - ARIANE6_C(0.6427876096865393) * t7;
     const ariane6_real_t t16 = ARIANE6_SQRT(ARIANE6_C(-0.126918) * t15 + ARIANE6_C(0.420682));
     const ariane6_real_t t17 = ARIANE6_C(0.766044443118978) * t7 + ARIANE6_C(0.6427876096865393) * t4;
     const ariane6_real_t t18 = ARIANE6_C(0.019697757607273984) * t16 / t17;
-    const ariane6_real_t t19 = t11 * t5;
+    const ariane6_real_t t19 = t11 * t5; /* link j2: motion */
     out[39] = -(t18 * t19);
-    const ariane6_real_t t20 = t6 + t9;
-    const ariane6_real_t t21 = t4 * ddq[0];
-    const ariane6_real_t t22 = t12 - (t21 - t12);
+    const ariane6_real_t t20 = t6 + t9; /* link j3: motion */
+    const ariane6_real_t t21 = t4 * ddq[0]; /* link j2: motion */
+    const ariane6_real_t t22 = t12 - (t21 - t12); /* link j3: motion */
     out[2] = t20 * t13 - t22 * t10;
-    const ariane6_real_t t23 = t11 * t11;
+    const ariane6_real_t t23 = t11 * t11; /* link j2: motion */
     const ariane6_real_t t24 = t5 * t5;
     out[40] = t18 * (t23 - t24);
-    const ariane6_real_t t25 = ddq[1] + t19;
+    const ariane6_real_t t25 = ddq[1] + t19; /* link j3: motion */
     const ariane6_real_t t26 = dq[1] * dq[1];
     out[3] = t25 * t10 + (t26 - t23) * t13;
     out[41] = t18 * t8;
@@ -123,8 +125,8 @@ int ariane6_regressor_packed(
     out[42] = t18 * t21;
     out[5] = t6 * t10 - t14;
     out[43] = t18 * ddq[1];
-    const ariane6_real_t t27 = ARIANE6_C(-0.18) * t3;
-    const ariane6_real_t t28 = ARIANE6_C(-0.18) * ddq[0];
+    const ariane6_real_t t27 = ARIANE6_C(-0.18) * t3; /* link j2: velocities by those of the joints */
+    const ariane6_real_t t28 = ARIANE6_C(-0.18) * ddq[0]; /* link j2: motion */
     out[6] = t22 * t27 - t28 * t13;
     const ariane6_real_t t29 = dq[0] * dq[0];
     const ariane6_real_t t30 = ARIANE6_C(0.18) * t29;
@@ -133,48 +135,49 @@ int ariane6_regressor_packed(
     out[7] = t20 * t27 + t28 * t10;
     const ariane6_real_t t32 = t4 * t30 + ARIANE6_C(-9.81) * t7;
     out[45] = t18 * t32;
-    const ariane6_real_t t35 = t4 * t34 - t7 * t33;
+    const ariane6_real_t t35 = t4 * t34 - t7 * t33; /* link j3: motion */
     const ariane6_real_t t36 = dq[0] * t35;
     const ariane6_real_t t37 = dq[1] + dq[2];
     const ariane6_real_t t38 = t37 * t36;
     const ariane6_real_t t39 = t7 * t34 + t4 * t33;
     const ariane6_real_t t40 = ddq[0] * t39;
     const ariane6_real_t t41 = t38 + t40;
-    const ariane6_real_t t42 = t3 * t39;
-    const ariane6_real_t t43 = dq[0] * t39;
+    const ariane6_real_t t42 = t3 * t39; /* link j3: velocities by those of the joints */
+    const ariane6_real_t t43 = dq[0] * t39; /* link j3: motion */
     const ariane6_real_t t44 = t37 * t43;
-    const ariane6_real_t t45 = t3 * t35;
-    const ariane6_real_t t46 = t44 * t45;
+    const ariane6_real_t t45 = t3 * t35; /* link j3: velocities by those of the joints */
+    const ariane6_real_t t46 = t44 * t45; /* link j3: columns */
     out[8] = t41 * t42 + t46;
-    const ariane6_real_t t47 = t43 * t36;
+    const ariane6_real_t t47 = t43 * t36; /* link j3: motion */
     const ariane6_real_t t48 = t18 * t47;
     out[46] = -t48;
+    /* joint j3: drive */
     const ariane6_real_t t49 = ARIANE6_C(0.052335956242943966) * t34 + ARIANE6_C(0.9986295347545738) * t33;
     const ariane6_real_t t50 = ARIANE6_SQRT(ARIANE6_C(-0.083776) * t49 + ARIANE6_C(0.38408000000000003));
     const ariane6_real_t t51 = ARIANE6_C(0.052335956242943966) * t33 - ARIANE6_C(0.9986295347545738) * t34;
     const ariane6_real_t t52 = ARIANE6_C(0.029841482047364396) * t50 / t51;
-    const ariane6_real_t t53 = ARIANE6_C(1.0) / t16;
+    const ariane6_real_t t53 = ARIANE6_C(1.0) / t16; /* joint j2: drive */
     const ariane6_real_t t54 = t17 * (ARIANE6_C(12691.800000000003) * t53);
     const ariane6_real_t t55 = t52 * (ARIANE6_C(0.004) * t54);
     out[77] = -(t48 * t55);
-    const ariane6_real_t t56 = t38 + t41;
-    const ariane6_real_t t57 = ddq[0] * t35;
+    const ariane6_real_t t56 = t38 + t41; /* link j4: motion */
+    const ariane6_real_t t57 = ddq[0] * t35; /* link j3: motion */
     const ariane6_real_t t58 = t57 - t44;
-    const ariane6_real_t t59 = t58 - t44;
+    const ariane6_real_t t59 = t58 - t44; /* link j4: motion */
     out[9] = t56 * t45 + t59 * t42;
-    const ariane6_real_t t60 = t43 * t43;
+    const ariane6_real_t t60 = t43 * t43; /* link j3: motion */
     const ariane6_real_t t61 = t36 * t36;
     const ariane6_real_t t62 = t18 * (t60 - t61);
     out[47] = t62;
     out[78] = t62 * t55;
     const ariane6_real_t t63 = ddq[1] + ddq[2];
-    const ariane6_real_t t64 = t47 + t63;
-    const ariane6_real_t t65 = t37 * t37;
+    const ariane6_real_t t64 = t47 + t63; /* link j4: motion */
+    const ariane6_real_t t65 = t37 * t37; /* link j3: motion */
     out[10] = t64 * t42 - (t60 - t65) * t45;
     const ariane6_real_t t66 = t18 * t40;
     out[48] = t66;
     out[79] = t66 * t55;
-    const ariane6_real_t t67 = t63 - t47;
+    const ariane6_real_t t67 = t63 - t47; /* link j4: motion */
     out[11] = t67 * t45 + (t61 - t65) * t42;
     const ariane6_real_t t68 = t18 * t57;
     out[49] = t68;
@@ -183,69 +186,69 @@ int ariane6_regressor_packed(
     const ariane6_real_t t69 = t18 * t63;
     out[50] = t69;
     out[81] = t69 * t55;
-    const ariane6_real_t t70 = ARIANE6_C(0.685) * t13 - t27;
-    const ariane6_real_t t71 = t28 + ARIANE6_C(0.685) * t22;
+    const ariane6_real_t t70 = ARIANE6_C(0.685) * t13 - t27; /* link j3: velocities by those of the joints */
+    const ariane6_real_t t71 = t28 + ARIANE6_C(0.685) * t22; /* link j3: motion */
     out[13] = t59 * t70 - t71 * t45;
-    const ariane6_real_t t72 = t65 + t61;
-    const ariane6_real_t t73 = ARIANE6_C(-0.685) * t18;
+    const ariane6_real_t t72 = t65 + t61; /* link j4: motion */
+    const ariane6_real_t t73 = ARIANE6_C(-0.685) * t18; /* link j3: velocities by those of the joints */
     const ariane6_real_t t74 = t33 * t73;
     const ariane6_real_t t75 = t34 * t73;
-    const ariane6_real_t t76 = t32 + ARIANE6_C(0.685) * (t26 + t24);
+    const ariane6_real_t t76 = t32 + ARIANE6_C(0.685) * (t26 + t24); /* link j3: motion */
     const ariane6_real_t t77 = t31 + ARIANE6_C(0.685) * t25;
     const ariane6_real_t t78 = t33 * t76 + t34 * t77;
-    const ariane6_real_t t79 = t18 * t78;
+    const ariane6_real_t t79 = t18 * t78; /* link j3: columns */
     out[51] = t72 * t74 - t64 * t75 + t79;
     out[82] = t55 * t79;
     out[14] = t71 * t42 - t56 * t70;
-    const ariane6_real_t t80 = t65 + t60;
-    const ariane6_real_t t81 = t34 * t76 - t33 * t77;
-    const ariane6_real_t t82 = t18 * t81;
+    const ariane6_real_t t80 = t65 + t60; /* link j4: motion */
+    const ariane6_real_t t81 = t34 * t76 - t33 * t77; /* link j3: motion */
+    const ariane6_real_t t82 = t18 * t81; /* link j3: columns */
     out[52] = t67 * t74 + t80 * t75 + t82;
     out[83] = t55 * t82;
-    const ariane6_real_t t85 = t83 * t67 - t84 * t56;
+    const ariane6_real_t t85 = t83 * t67 - t84 * t56; /* link j4: motion */
     const ariane6_real_t t86 = t84 * t37 + t83 * t43;
     const ariane6_real_t t87 = dq[3] + t36;
     const ariane6_real_t t88 = t86 * t87;
     const ariane6_real_t t89 = t88 + t85;
-    const ariane6_real_t t90 = t84 * t42;
-    const ariane6_real_t t91 = t83 * t37 - t84 * t43;
+    const ariane6_real_t t90 = t84 * t42; /* link j4: velocities by those of the joints */
+    const ariane6_real_t t91 = t83 * t37 - t84 * t43; /* link j4: motion */
     const ariane6_real_t t92 = t91 * t87;
-    const ariane6_real_t t93 = t83 * t42;
-    const ariane6_real_t t94 = t92 * t93;
-    const ariane6_real_t t95 = t91 * t86;
+    const ariane6_real_t t93 = t83 * t42; /* link j4: velocities by those of the joints */
+    const ariane6_real_t t94 = t92 * t93; /* link j4: columns */
+    const ariane6_real_t t95 = t91 * t86; /* link j4: motion */
     out[15] = t94 - t95 * t45 - t89 * t90;
-    const ariane6_real_t t96 = t83 * t18;
+    const ariane6_real_t t96 = t83 * t18; /* link j4: velocities by those of the joints */
     const ariane6_real_t t97 = t84 * t18;
-    const ariane6_real_t t98 = t92 * t97;
+    const ariane6_real_t t98 = t92 * t97; /* link j4: columns */
     const ariane6_real_t t99 = t89 * t96 + t98;
     out[53] = t99;
     out[84] = t55 * t99;
     out[108] = ARIANE6_C(-0.2) * t95;
-    const ariane6_real_t t100 = t88 + t89;
-    const ariane6_real_t t101 = t84 * t67 + t83 * t56;
+    const ariane6_real_t t100 = t88 + t89; /* link j5: motion */
+    const ariane6_real_t t101 = t84 * t67 + t83 * t56; /* link j4: motion */
     const ariane6_real_t t102 = t101 - t92;
-    const ariane6_real_t t103 = t92 - t102;
-    const ariane6_real_t t104 = t91 * t91;
+    const ariane6_real_t t103 = t92 - t102; /* link j5: motion */
+    const ariane6_real_t t104 = t91 * t91; /* link j4: motion */
     const ariane6_real_t t105 = t86 * t86;
-    const ariane6_real_t t106 = t104 - t105;
+    const ariane6_real_t t106 = t104 - t105; /* link j4: force and moment */
     out[16] = t100 * t93 + t103 * t90 + t106 * t45;
-    const ariane6_real_t t107 = t100 * t97 - t103 * t96;
+    const ariane6_real_t t107 = t100 * t97 - t103 * t96; /* link j4: columns */
     out[54] = t107;
     out[85] = t55 * t107;
     out[109] = ARIANE6_C(0.2) * t106;
-    const ariane6_real_t t108 = ddq[3] + t58;
-    const ariane6_real_t t109 = t95 + t108;
-    const ariane6_real_t t110 = t87 * t87;
-    const ariane6_real_t t111 = t104 - t110;
+    const ariane6_real_t t108 = ddq[3] + t58; /* link j4: motion */
+    const ariane6_real_t t109 = t95 + t108; /* link j5: motion */
+    const ariane6_real_t t110 = t87 * t87; /* link j4: motion */
+    const ariane6_real_t t111 = t104 - t110; /* link j4: force and moment */
     out[17] = t111 * t93 - (t85 * t45 - t109 * t90);
-    const ariane6_real_t t112 = t111 * t97 - t109 * t96;
+    const ariane6_real_t t112 = t111 * t97 - t109 * t96; /* link j4: columns */
     out[55] = t112;
     out[86] = t55 * t112;
     out[110] = ARIANE6_C(-0.2) * t85;
-    const ariane6_real_t t113 = t95 - t108;
-    const ariane6_real_t t114 = t105 - t110;
+    const ariane6_real_t t113 = t95 - t108; /* link j5: motion */
+    const ariane6_real_t t114 = t105 - t110; /* link j4: force and moment */
     out[18] = t114 * t90 - (t101 * t45 - t113 * t93);
-    const ariane6_real_t t115 = t113 * t97 - t114 * t96;
+    const ariane6_real_t t115 = t113 * t97 - t114 * t96; /* link j4: columns */
     out[56] = t115;
     out[87] = t55 * t115;
     out[111] = ARIANE6_C(-0.2) * t101;
@@ -254,25 +257,29 @@ int ariane6_regressor_packed(
     out[57] = t116;
     out[88] = t55 * t116;
     out[112] = ARIANE6_C(0.2) * t108;
+    /* link j4: motion */
     const ariane6_real_t t117 = t78 + (ARIANE6_C(-0.488) * t80 + ARIANE6_C(-0.17) * t64);
     const ariane6_real_t t118 = t81 + (ARIANE6_C(-0.17) * t72 + ARIANE6_C(0.488) * t67);
     const ariane6_real_t t119 = t71 + (ARIANE6_C(0.17) * t59 + ARIANE6_C(0.488) * t56);
     const ariane6_real_t t120 = t83 * t118 - t84 * t119;
-    const ariane6_real_t t121 = t105 + t110;
+    const ariane6_real_t t121 = t105 + t110; /* link j5: motion */
+    /* link j4: velocities by those of the joints */
     const ariane6_real_t t122 = t70 - (ARIANE6_C(0.488) * t42 - ARIANE6_C(-0.17) * t45);
+    /* link j4: columns */
     const ariane6_real_t t123 = t117 * t93 + t120 * t45 + (t84 * t109 - t83 * t121) * t122;
     out[20] = t123;
-    const ariane6_real_t t124 = ARIANE6_C(0.17) * t18;
+    const ariane6_real_t t124 = ARIANE6_C(0.17) * t18; /* link j4: velocities by those of the joints */
     const ariane6_real_t t125 = t75 + t124;
-    const ariane6_real_t t126 = t83 * t109 + t84 * t121;
-    const ariane6_real_t t127 = ARIANE6_C(0.488) * t18;
+    const ariane6_real_t t126 = t83 * t109 + t84 * t121; /* link j4: columns */
+    const ariane6_real_t t127 = ARIANE6_C(0.488) * t18; /* link j4: velocities by those of the joints */
     const ariane6_real_t t128 = t74 + t127;
-    const ariane6_real_t t129 = t117 * t97;
+    const ariane6_real_t t129 = t117 * t97; /* link j4: columns */
     out[58] = t129 + (t103 * t125 + t126 * t128);
     out[89] = t55 * (t129 + (t103 * t124 + t126 * t127));
     out[113] = ARIANE6_C(0.2) * t120;
-    const ariane6_real_t t130 = t84 * t118 + t83 * t119;
-    const ariane6_real_t t131 = t104 + t110;
+    const ariane6_real_t t130 = t84 * t118 + t83 * t119; /* link j4: motion */
+    const ariane6_real_t t131 = t104 + t110; /* link j5: motion */
+    /* link j4: columns */
     const ariane6_real_t t132 = t117 * t90 + t130 * t45 + (t83 * t113 - t84 * t131) * t122;
     out[21] = t132;
     const ariane6_real_t t133 = t84 * t113 + t83 * t131;
@@ -280,58 +287,59 @@ int ariane6_regressor_packed(
     out[59] = t100 * t125 - t133 * t128 - t134;
     out[90] = t55 * (t100 * t124 - t133 * t127 - t134);
     out[114] = ARIANE6_C(0.2) * t130;
-    const ariane6_real_t t137 = t135 * t113 + t136 * t100;
+    const ariane6_real_t t137 = t135 * t113 + t136 * t100; /* link j5: motion */
     const ariane6_real_t t138 = t135 * t91 + t136 * t87;
     const ariane6_real_t t139 = dq[4] + t86;
     const ariane6_real_t t140 = t138 * t139;
     const ariane6_real_t t141 = t140 - t137;
-    const ariane6_real_t t142 = t136 * t90 + t135 * t45;
-    const ariane6_real_t t143 = t136 * t91 - t135 * t87;
+    const ariane6_real_t t142 = t136 * t90 + t135 * t45; /* link j5: velocities by those of the joints */
+    const ariane6_real_t t143 = t136 * t91 - t135 * t87; /* link j5: motion */
     const ariane6_real_t t144 = t143 * t139;
-    const ariane6_real_t t145 = t136 * t45 - t135 * t90;
-    const ariane6_real_t t146 = t144 * t145;
-    const ariane6_real_t t147 = t143 * t138;
+    const ariane6_real_t t145 = t136 * t45 - t135 * t90; /* link j5: velocities by those of the joints */
+    const ariane6_real_t t146 = t144 * t145; /* link j5: columns */
+    const ariane6_real_t t147 = t143 * t138; /* link j5: motion */
     out[22] = t141 * t142 + (t147 * t93 - t146);
-    const ariane6_real_t t148 = t136 * t96;
+    const ariane6_real_t t148 = t136 * t96; /* link j5: velocities by those of the joints */
     const ariane6_real_t t149 = t135 * t96;
-    const ariane6_real_t t150 = t144 * t149;
+    const ariane6_real_t t150 = t144 * t149; /* link j5: columns */
     const ariane6_real_t t151 = t147 * t97 - t150 - t141 * t148;
     out[60] = t151;
     out[91] = t55 * t151;
-    const ariane6_real_t t152 = ARIANE6_C(0.2) * t135;
+    const ariane6_real_t t152 = ARIANE6_C(0.2) * t135; /* link j5: velocities by those of the joints */
     const ariane6_real_t t153 = ARIANE6_C(0.2) * t136;
-    const ariane6_real_t t154 = t144 * t153;
+    const ariane6_real_t t154 = t144 * t153; /* link j5: columns */
     out[115] = t141 * t152 - t154;
+    /* joint j5: drive */
     const ariane6_real_t t155 = ARIANE6_SQRT(ARIANE6_C(0.035496) * t135 + ARIANE6_C(0.097));
     const ariane6_real_t t156 = ARIANE6_C(0.07043047103899029) * t155 / t136;
     out[132] = t156 * t147;
-    const ariane6_real_t t157 = t140 + t141;
-    const ariane6_real_t t158 = t135 * t100 - t136 * t113;
+    const ariane6_real_t t157 = t140 + t141; /* link j6: motion */
+    const ariane6_real_t t158 = t135 * t100 - t136 * t113; /* link j5: motion */
     const ariane6_real_t t159 = t144 + t158;
-    const ariane6_real_t t160 = t144 + t159;
-    const ariane6_real_t t161 = t143 * t143;
+    const ariane6_real_t t160 = t144 + t159; /* link j6: motion */
+    const ariane6_real_t t161 = t143 * t143; /* link j5: motion */
     const ariane6_real_t t162 = t138 * t138;
-    const ariane6_real_t t163 = t161 - t162;
+    const ariane6_real_t t163 = t161 - t162; /* link j5: force and moment */
     out[23] = t157 * t145 + t160 * t142 + t163 * t93;
-    const ariane6_real_t t164 = t163 * t97 - (t160 * t148 - t157 * t149);
+    const ariane6_real_t t164 = t163 * t97 - (t160 * t148 - t157 * t149); /* link j5: columns */
     out[61] = t164;
     out[92] = t55 * t164;
     out[116] = t157 * t153 + t160 * t152;
     out[133] = t156 * t163;
-    const ariane6_real_t t165 = ddq[4] + t102;
-    const ariane6_real_t t166 = t147 - t165;
-    const ariane6_real_t t167 = t139 * t139;
-    const ariane6_real_t t168 = t167 - t161;
+    const ariane6_real_t t165 = ddq[4] + t102; /* link j5: motion */
+    const ariane6_real_t t166 = t147 - t165; /* link j6: motion */
+    const ariane6_real_t t167 = t139 * t139; /* link j5: motion */
+    const ariane6_real_t t168 = t167 - t161; /* link j5: force and moment */
     out[24] = t168 * t145 - (t166 * t142 + t137 * t93);
-    const ariane6_real_t t169 = t166 * t148 - t137 * t97 + t168 * t149;
+    const ariane6_real_t t169 = t166 * t148 - t137 * t97 + t168 * t149; /* link j5: columns */
     out[62] = t169;
     out[93] = t55 * t169;
     out[117] = t168 * t153 - t166 * t152;
     out[134] = -(t156 * t137);
-    const ariane6_real_t t170 = t147 + t165;
-    const ariane6_real_t t171 = t162 - t167;
+    const ariane6_real_t t170 = t147 + t165; /* link j6: motion */
+    const ariane6_real_t t171 = t162 - t167; /* link j5: force and moment */
     out[25] = t158 * t93 + t170 * t145 + t171 * t142;
-    const ariane6_real_t t172 = t158 * t97 + t170 * t149 - t171 * t148;
+    const ariane6_real_t t172 = t158 * t97 + t170 * t149 - t171 * t148; /* link j5: columns */
     out[63] = t172;
     out[94] = t55 * t172;
     out[118] = t170 * t153 + t171 * t152;
@@ -342,9 +350,9 @@ int ariane6_regressor_packed(
     out[95] = t55 * t173;
     out[119] = t154 + t140 * t152;
     out[136] = t156 * t165;
-    const ariane6_real_t t174 = t135 * t130 + t136 * t117;
-    const ariane6_real_t t175 = t162 + t167;
-    const ariane6_real_t t176 = t135 * t166 - t136 * t175;
+    const ariane6_real_t t174 = t135 * t130 + t136 * t117; /* link j5: motion */
+    const ariane6_real_t t175 = t162 + t167; /* link j6: motion */
+    const ariane6_real_t t176 = t135 * t166 - t136 * t175; /* link j5: columns */
     const ariane6_real_t t177 = t120 * t145 + t174 * t93 + (t83 * t176 + t84 * t160) * t122;
     out[27] = t177;
     const ariane6_real_t t178 = t120 * t149 + t174 * t97;
@@ -354,9 +362,9 @@ int ariane6_regressor_packed(
     out[96] = t55 * (t178 + (t180 * t124 - t179 * t127));
     out[120] = t120 * t153;
     out[137] = t156 * t174;
-    const ariane6_real_t t181 = t136 * t130 - t135 * t117;
-    const ariane6_real_t t182 = t161 + t167;
-    const ariane6_real_t t183 = t135 * t182 - t136 * t170;
+    const ariane6_real_t t181 = t136 * t130 - t135 * t117; /* link j5: motion */
+    const ariane6_real_t t182 = t161 + t167; /* link j6: motion */
+    const ariane6_real_t t183 = t135 * t182 - t136 * t170; /* link j5: columns */
     const ariane6_real_t t184 = t181 * t93 - t120 * t142 + (t83 * t183 - t84 * t157) * t122;
     out[28] = t184;
     const ariane6_real_t t185 = t120 * t148 + t181 * t97;
@@ -366,61 +374,61 @@ int ariane6_regressor_packed(
     out[97] = t55 * (t185 + (t187 * t124 - t186 * t127));
     out[121] = -(t120 * t152);
     out[138] = t156 * t181;
-    const ariane6_real_t t190 = t188 * t170 - t189 * t157;
+    const ariane6_real_t t190 = t188 * t170 - t189 * t157; /* link j6: motion */
     const ariane6_real_t t191 = t189 * t139 - t188 * t143;
     const ariane6_real_t t192 = dq[5] + t138;
     const ariane6_real_t t193 = t191 * t192;
     const ariane6_real_t t194 = t193 + t190;
-    const ariane6_real_t t195 = t188 * t93 - t189 * t142;
-    const ariane6_real_t t196 = t189 * t143 + t188 * t139;
+    const ariane6_real_t t195 = t188 * t93 - t189 * t142; /* link j6: velocities by those of the joints */
+    const ariane6_real_t t196 = t189 * t143 + t188 * t139; /* link j6: motion */
     const ariane6_real_t t197 = t196 * t192;
-    const ariane6_real_t t198 = t188 * t142 + t189 * t93;
-    const ariane6_real_t t199 = t197 * t198;
-    const ariane6_real_t t200 = t196 * t191;
+    const ariane6_real_t t198 = t188 * t142 + t189 * t93; /* link j6: velocities by those of the joints */
+    const ariane6_real_t t199 = t197 * t198; /* link j6: columns */
+    const ariane6_real_t t200 = t196 * t191; /* link j6: motion */
     out[29] = t194 * t195 - (t200 * t145 - t199);
-    const ariane6_real_t t201 = t189 * t148 + t188 * t97;
+    const ariane6_real_t t201 = t189 * t148 + t188 * t97; /* link j6: velocities by those of the joints */
     const ariane6_real_t t202 = t189 * t97 - t188 * t148;
-    const ariane6_real_t t203 = t197 * t202;
+    const ariane6_real_t t203 = t197 * t202; /* link j6: columns */
     const ariane6_real_t t204 = t194 * t201 - (t200 * t149 - t203);
     out[67] = t204;
     out[98] = t55 * t204;
-    const ariane6_real_t t205 = t189 * t152;
+    const ariane6_real_t t205 = t189 * t152; /* link j6: velocities by those of the joints */
     const ariane6_real_t t206 = t188 * t152;
-    const ariane6_real_t t207 = t197 * t206;
+    const ariane6_real_t t207 = t197 * t206; /* link j6: columns */
     out[122] = t207 - t200 * t153 - t194 * t205;
-    const ariane6_real_t t208 = t188 * t156;
+    const ariane6_real_t t208 = t188 * t156; /* link j6: velocities by those of the joints */
     const ariane6_real_t t209 = t189 * t156;
-    const ariane6_real_t t210 = t197 * t209;
+    const ariane6_real_t t210 = t197 * t209; /* link j6: columns */
     out[139] = t194 * t208 + t210;
     out[149] = ARIANE6_C(-0.2) * t200;
-    const ariane6_real_t t211 = t193 + t194;
-    const ariane6_real_t t212 = t189 * t170 + t188 * t157;
-    const ariane6_real_t t213 = t197 + (t197 - t212);
-    const ariane6_real_t t214 = t196 * t196;
+    const ariane6_real_t t211 = t193 + t194; /* link j6: force and moment */
+    const ariane6_real_t t212 = t189 * t170 + t188 * t157; /* link j6: motion */
+    const ariane6_real_t t213 = t197 + (t197 - t212); /* link j6: force and moment */
+    const ariane6_real_t t214 = t196 * t196; /* link j6: motion */
     const ariane6_real_t t215 = t191 * t191;
-    const ariane6_real_t t216 = t214 - t215;
+    const ariane6_real_t t216 = t214 - t215; /* link j6: force and moment */
     out[30] = t216 * t145 - (t213 * t195 - t211 * t198);
-    const ariane6_real_t t217 = t216 * t149 - (t213 * t201 - t211 * t202);
+    const ariane6_real_t t217 = t216 * t149 - (t213 * t201 - t211 * t202); /* link j6: columns */
     out[68] = t217;
     out[99] = t55 * t217;
     out[123] = t211 * t206 + t213 * t205 + t216 * t153;
     out[140] = t211 * t209 - t213 * t208;
     out[150] = ARIANE6_C(0.2) * t216;
-    const ariane6_real_t t218 = ddq[5] + t159;
-    const ariane6_real_t t219 = t200 + t218;
-    const ariane6_real_t t220 = t192 * t192;
-    const ariane6_real_t t221 = t214 - t220;
+    const ariane6_real_t t218 = ddq[5] + t159; /* link j6: motion */
+    const ariane6_real_t t219 = t200 + t218; /* link j6: force and moment */
+    const ariane6_real_t t220 = t192 * t192; /* link j6: motion */
+    const ariane6_real_t t221 = t214 - t220; /* link j6: force and moment */
     out[31] = t221 * t198 - (t219 * t195 + t190 * t145);
-    const ariane6_real_t t222 = t221 * t202 - (t219 * t201 + t190 * t149);
+    const ariane6_real_t t222 = t221 * t202 - (t219 * t201 + t190 * t149); /* link j6: columns */
     out[69] = t222;
     out[100] = t55 * t222;
     out[124] = t219 * t205 - t190 * t153 + t221 * t206;
     out[141] = t221 * t209 - t219 * t208;
     out[151] = ARIANE6_C(-0.2) * t190;
-    const ariane6_real_t t223 = t200 - t218;
+    const ariane6_real_t t223 = t200 - t218; /* link j6: force and moment */
     const ariane6_real_t t224 = t215 - t220;
     out[32] = t223 * t198 - t212 * t145 - t224 * t195;
-    const ariane6_real_t t225 = t223 * t202 - t212 * t149 - t224 * t201;
+    const ariane6_real_t t225 = t223 * t202 - t212 * t149 - t224 * t201; /* link j6: columns */
     out[70] = t225;
     out[101] = t55 * t225;
     out[125] = t223 * t206 - t212 * t153 + t224 * t205;
@@ -433,9 +441,9 @@ int ariane6_regressor_packed(
     out[126] = t218 * t153 - (t207 + t193 * t205);
     out[143] = t193 * t208 - t210;
     out[153] = ARIANE6_C(0.2) * t218;
-    const ariane6_real_t t227 = t188 * t181 + t189 * t120;
-    const ariane6_real_t t228 = t215 + t220;
-    const ariane6_real_t t229 = t188 * t219 + t189 * t228;
+    const ariane6_real_t t227 = t188 * t181 + t189 * t120; /* link j6: motion */
+    const ariane6_real_t t228 = t215 + t220; /* link j6: force and moment */
+    const ariane6_real_t t229 = t188 * t219 + t189 * t228; /* link j6: columns */
     const ariane6_real_t t230 = t135 * t213 - t136 * t229;
     const ariane6_real_t t231 = t189 * t219 - t188 * t228;
     const ariane6_real_t t232 = t174 * t198 + t227 * t145 + (t83 * t230 + t84 * t231) * t122;
@@ -448,9 +456,9 @@ int ariane6_regressor_packed(
     out[127] = t174 * t206 + t227 * t153;
     out[144] = t174 * t209;
     out[154] = ARIANE6_C(0.2) * t227;
-    const ariane6_real_t t236 = t189 * t181 - t188 * t120;
-    const ariane6_real_t t237 = t214 + t220;
-    const ariane6_real_t t238 = t189 * t223 + t188 * t237;
+    const ariane6_real_t t236 = t189 * t181 - t188 * t120; /* link j6: motion */
+    const ariane6_real_t t237 = t214 + t220; /* link j6: force and moment */
+    const ariane6_real_t t238 = t189 * t223 + t188 * t237; /* link j6: columns */
     const ariane6_real_t t239 = t136 * t238 + t135 * t211;
     const ariane6_real_t t240 = t188 * t223 - t189 * t237;
     const ariane6_real_t t241 = t236 * t145 - t174 * t195 + (t83 * t239 + t84 * t240) * t122;
@@ -463,48 +471,52 @@ int ariane6_regressor_packed(
     out[128] = t174 * t205 + t236 * t153;
     out[145] = -(t174 * t208);
     out[155] = ARIANE6_C(0.2) * t236;
-    const ariane6_real_t t245 = ARIANE6_C(-1.0) / t1;
+    const ariane6_real_t t245 = ARIANE6_C(-1.0) / t1; /* joint j1: drive */
     const ariane6_real_t t246 = t2 * (ARIANE6_C(-4063.3400000000006) * t245);
     const ariane6_real_t t247 = t246 * dq[0];
     out[36] = ARIANE6_C(250.0) * t247;
-    const ariane6_real_t t248 = ariane6_sign(t247);
+    const ariane6_real_t t248 = ariane6_sign(t247); /* joint j1: coulomb_friction */
     out[37] = ARIANE6_C(250.0) * t248;
+    /* joint j1: drive */
     const ariane6_real_t t249 = ARIANE6_C(-4063.3400000000006) * t0
         + ARIANE6_C(-82.55365977800001) * (t245 * t245) * (t2 * t2);
     out[38] = ARIANE6_C(250.0) * (t246 * ddq[0] - t245 * t249 * t29);
     const ariane6_real_t t250 = t54 * dq[1];
     out[74] = ARIANE6_C(250.0) * t250;
-    const ariane6_real_t t251 = ariane6_sign(t250);
+    const ariane6_real_t t251 = ariane6_sign(t250); /* joint j2: coulomb_friction */
     out[75] = ARIANE6_C(250.0) * t251;
+    /* joint j2: drive */
     const ariane6_real_t t252 = ARIANE6_C(12691.800000000003) * t15
         + ARIANE6_C(-805.4089362000002) * (t53 * t53) * (t17 * t17);
     out[76] = ARIANE6_C(250.0) * (t53 * t252 * t26 + t54 * ddq[1]);
-    const ariane6_real_t t253 = ARIANE6_C(1.0) / t50;
+    const ariane6_real_t t253 = ARIANE6_C(1.0) / t50; /* joint j3: drive */
     const ariane6_real_t t254 = t51 * (ARIANE6_C(8377.600000000002) * t253);
     const ariane6_real_t t255 = t254 * dq[2];
     out[105] = ARIANE6_C(250.0) * t255;
-    const ariane6_real_t t256 = ariane6_sign(t255);
+    const ariane6_real_t t256 = ariane6_sign(t255); /* joint j3: coulomb_friction */
     out[106] = ARIANE6_C(250.0) * t256;
+    /* joint j3: drive */
     const ariane6_real_t t257 = ARIANE6_C(8377.600000000002) * t49
         + ARIANE6_C(-350.9209088000001) * (t253 * t253) * (t51 * t51);
     const ariane6_real_t t258 = ARIANE6_C(250.0) * (t253 * t257 * (dq[2] * dq[2]) + t254 * ddq[2]);
     out[107] = t258;
     out[129] = ARIANE6_C(2.0e3) * dq[3];
-    const ariane6_real_t t259 = ariane6_sign(dq[3]);
+    const ariane6_real_t t259 = ariane6_sign(dq[3]); /* joint j4: coulomb_friction */
     out[130] = ARIANE6_C(20.0) * t259;
     out[131] = ARIANE6_C(2.0e3) * ddq[3];
-    const ariane6_real_t t260 = ARIANE6_C(-1.0) / t155;
+    const ariane6_real_t t260 = ARIANE6_C(-1.0) / t155; /* joint j5: drive */
     const ariane6_real_t t261 = t136 * (ARIANE6_C(-3549.6000000000004) * t260);
     const ariane6_real_t t262 = t261 * dq[4];
     out[146] = ARIANE6_C(250.0) * t262;
-    const ariane6_real_t t263 = ariane6_sign(t262);
+    const ariane6_real_t t263 = ariane6_sign(t262); /* joint j5: coulomb_friction */
     out[147] = ARIANE6_C(250.0) * t263;
+    /* joint j5: drive */
     const ariane6_real_t t264 = ARIANE6_C(-3549.6000000000004) * t135
         + ARIANE6_C(-62.9983008) * (t260 * t260) * (t136 * t136);
     const ariane6_real_t t265 = ARIANE6_C(250.0) * (t261 * ddq[4] - t260 * t264 * (dq[4] * dq[4]));
     out[148] = t265;
     out[156] = ARIANE6_C(2.0e3) * dq[5];
-    const ariane6_real_t t266 = ariane6_sign(dq[5]);
+    const ariane6_real_t t266 = ariane6_sign(dq[5]); /* joint j6: coulomb_friction */
     out[157] = ARIANE6_C(20.0) * t266;
     out[158] = ARIANE6_C(2.0e3) * ddq[5];
     return ARIANE6_STATUS_OK;

@@ -6,7 +6,7 @@
  * Arm ariane6, description ac2a59ce556c2f1c.
  * SPDX-License-Identifier: 0BSD
  *
- * Operations: 891 (576 mul, 306 add, 9 neg), 8 div, 4 sqrt, 12 trig, 6 other.
+ * Operations: 891 (576 mul, 306 add, 9 neg), 8 div, 4 sqrt, 12 trig, 6 other calls (sign, select and the like).
  *
  * @param[in]   q      [6]    [rad]                          joint coordinates; norm at most 10000
  * @param[in]   dq     [6]    [rad/s]                        joint velocities; norm at most 100000
@@ -35,18 +35,18 @@
  */
 #include "ariane6_private.h"
 
-#if ARIANE6_GENERATION != 0xBA206C14UL
+#if ARIANE6_GENERATION != 0x13CD28B3UL
 #error "ariane6.h and ariane6_slotine_li_regressor.c are of different generations: generate the arm again"
 #endif
 
-int ariane6_slotine_li_regressor(
+ariane6_status_t ariane6_slotine_li_regressor(
     const ariane6_real_t q[ARIANE6_N_JOINTS],
     const ariane6_real_t dq[ARIANE6_N_JOINTS],
     const ariane6_real_t dq_r[ARIANE6_N_JOINTS],
     const ariane6_real_t ddq_r[ARIANE6_N_JOINTS],
     ariane6_real_t out[ARIANE6_N_JOINTS * ARIANE6_N_PARAMETERS])
 {
-    int status = ARIANE6_STATUS_OK;
+    ariane6_status_t status = ARIANE6_STATUS_OK;
 
     if (!ariane6_within_joints(q, ARIANE6_C(1.0e8))
         || !ariane6_within_joints(dq, ARIANE6_C(1.0e10))
@@ -77,53 +77,55 @@ int ariane6_slotine_li_regressor(
     ARIANE6_SINCOS(q[4], &t145, &t144);
     ariane6_real_t t200, t201;
     ARIANE6_SINCOS(q[5], &t200, &t201);
+    /* joint j1: drive */
     const ariane6_real_t t1 = ARIANE6_SQRT(ARIANE6_C(0.0406334) * t0 + ARIANE6_C(0.10828541));
     const ariane6_real_t t3 = ARIANE6_C(0.061525739908548135) * t1 / t2;
     out[0] = t3 * ddq_r[0];
-    const ariane6_real_t t5 = t4 * dq[0];
+    const ariane6_real_t t5 = t4 * dq[0]; /* link j2: motion */
     const ariane6_real_t t6 = t4 * dq_r[0];
     const ariane6_real_t t7 = ARIANE6_C(0.5) * (t5 * dq_r[1] + dq[1] * t6);
     const ariane6_real_t t9 = t8 * ddq_r[0];
     const ariane6_real_t t10 = t9 + t7;
-    const ariane6_real_t t11 = t8 * t3;
-    const ariane6_real_t t12 = t8 * dq[0];
+    const ariane6_real_t t11 = t8 * t3; /* link j2: velocities by those of the joints */
+    const ariane6_real_t t12 = t8 * dq[0]; /* link j2: motion */
     const ariane6_real_t t13 = t8 * dq_r[0];
     const ariane6_real_t t14 = ARIANE6_C(-0.5) * (t12 * dq_r[1] + dq[1] * t13);
-    const ariane6_real_t t15 = t4 * t3;
-    const ariane6_real_t t16 = t15 * t14;
+    const ariane6_real_t t15 = t4 * t3; /* link j2: velocities by those of the joints */
+    const ariane6_real_t t16 = t15 * t14; /* link j2: columns */
     out[1] = t11 * t10 - t16;
+    /* joint j2: drive */
     const ariane6_real_t t17 = ARIANE6_C(0.766044443118978) * t4 - ARIANE6_C(0.6427876096865393) * t8;
     const ariane6_real_t t18 = ARIANE6_SQRT(ARIANE6_C(-0.126918) * t17 + ARIANE6_C(0.420682));
     const ariane6_real_t t19 = ARIANE6_C(0.766044443118978) * t8 + ARIANE6_C(0.6427876096865393) * t4;
     const ariane6_real_t t20 = ARIANE6_C(0.019697757607273984) * t18 / t19;
-    const ariane6_real_t t21 = ARIANE6_C(-0.5) * (t12 * t6 + t5 * t13);
+    const ariane6_real_t t21 = ARIANE6_C(-0.5) * (t12 * t6 + t5 * t13); /* link j2: motion */
     out[55] = t20 * t21;
-    const ariane6_real_t t22 = t7 + t10;
-    const ariane6_real_t t23 = t4 * ddq_r[0];
-    const ariane6_real_t t24 = t14 + (t23 + t14);
+    const ariane6_real_t t22 = t7 + t10; /* link j3: motion */
+    const ariane6_real_t t23 = t4 * ddq_r[0]; /* link j2: motion */
+    const ariane6_real_t t24 = t14 + (t23 + t14); /* link j3: motion */
     out[2] = t15 * t22 + t11 * t24;
-    const ariane6_real_t t25 = t12 * t13;
+    const ariane6_real_t t25 = t12 * t13; /* link j2: motion */
     const ariane6_real_t t26 = t5 * t6;
     out[56] = t20 * (t25 - t26);
-    const ariane6_real_t t27 = ddq_r[1] - t21;
-    const ariane6_real_t t28 = dq[1] * dq_r[1];
+    const ariane6_real_t t27 = ddq_r[1] - t21; /* link j3: motion */
+    const ariane6_real_t t28 = dq[1] * dq_r[1]; /* link j2: motion */
     out[3] = t11 * t27 + t15 * (t28 - t25);
     out[57] = t20 * t9;
     out[4] = t15 * (ddq_r[1] + t21) + t11 * (t26 - t28);
     out[58] = t20 * t23;
     out[5] = t16 + t11 * t7;
     out[59] = t20 * ddq_r[1];
-    const ariane6_real_t t29 = ARIANE6_C(0.18) * t3;
-    const ariane6_real_t t30 = ARIANE6_C(-0.18) * ddq_r[0];
+    const ariane6_real_t t29 = ARIANE6_C(0.18) * t3; /* link j2: velocities by those of the joints */
+    const ariane6_real_t t30 = ARIANE6_C(-0.18) * ddq_r[0]; /* link j2: motion */
     out[6] = t29 * t24 - t15 * t30;
-    const ariane6_real_t t31 = dq[0] * dq_r[0];
-    const ariane6_real_t t32 = ARIANE6_C(0.18) * t31;
+    const ariane6_real_t t31 = dq[0] * dq_r[0]; /* link j1: motion */
+    const ariane6_real_t t32 = ARIANE6_C(0.18) * t31; /* link j2: motion */
     const ariane6_real_t t33 = ARIANE6_C(9.81) * t4 + t8 * t32;
     out[60] = t20 * t33;
     out[7] = t11 * t30 - t29 * t22;
     const ariane6_real_t t34 = ARIANE6_C(-9.81) * t8 + t4 * t32;
     out[61] = t20 * t34;
-    const ariane6_real_t t37 = t8 * t35 - t4 * t36;
+    const ariane6_real_t t37 = t8 * t35 - t4 * t36; /* link j3: motion */
     const ariane6_real_t t38 = dq[0] * t37;
     const ariane6_real_t t39 = dq_r[1] + dq_r[2];
     const ariane6_real_t t40 = t37 * dq_r[0];
@@ -132,115 +134,116 @@ int ariane6_slotine_li_regressor(
     const ariane6_real_t t43 = t8 * t36 + t4 * t35;
     const ariane6_real_t t44 = t43 * ddq_r[0];
     const ariane6_real_t t45 = t44 + t42;
-    const ariane6_real_t t46 = t3 * t43;
-    const ariane6_real_t t47 = dq[0] * t43;
+    const ariane6_real_t t46 = t3 * t43; /* link j3: velocities by those of the joints */
+    const ariane6_real_t t47 = dq[0] * t43; /* link j3: motion */
     const ariane6_real_t t48 = t43 * dq_r[0];
     const ariane6_real_t t49 = ARIANE6_C(-0.5) * (t47 * t39 + t41 * t48);
-    const ariane6_real_t t50 = t3 * t37;
-    const ariane6_real_t t51 = t50 * t49;
+    const ariane6_real_t t50 = t3 * t37; /* link j3: velocities by those of the joints */
+    const ariane6_real_t t51 = t50 * t49; /* link j3: columns */
     out[8] = t46 * t45 + t51;
-    const ariane6_real_t t52 = ARIANE6_C(0.5) * (t47 * t40 + t38 * t48);
-    const ariane6_real_t t53 = t20 * t52;
+    const ariane6_real_t t52 = ARIANE6_C(0.5) * (t47 * t40 + t38 * t48); /* link j3: motion */
+    const ariane6_real_t t53 = t20 * t52; /* link j3: columns */
     out[62] = t53;
+    /* joint j3: drive */
     const ariane6_real_t t54 = ARIANE6_C(0.052335956242943966) * t36 + ARIANE6_C(0.9986295347545738) * t35;
     const ariane6_real_t t55 = ARIANE6_SQRT(ARIANE6_C(-0.083776) * t54 + ARIANE6_C(0.38408000000000003));
     const ariane6_real_t t56 = ARIANE6_C(0.052335956242943966) * t35 - ARIANE6_C(0.9986295347545738) * t36;
     const ariane6_real_t t57 = ARIANE6_C(0.029841482047364396) * t55 / t56;
-    const ariane6_real_t t58 = ARIANE6_C(1.0) / t18;
+    const ariane6_real_t t58 = ARIANE6_C(1.0) / t18; /* joint j2: drive */
     const ariane6_real_t t59 = t19 * (ARIANE6_C(12691.800000000003) * t58);
     const ariane6_real_t t60 = t57 * (ARIANE6_C(0.004) * t59);
     out[116] = t60 * t53;
-    const ariane6_real_t t61 = t42 + t45;
-    const ariane6_real_t t62 = t37 * ddq_r[0];
+    const ariane6_real_t t61 = t42 + t45; /* link j4: motion */
+    const ariane6_real_t t62 = t37 * ddq_r[0]; /* link j3: motion */
     const ariane6_real_t t63 = t49 - t62;
-    const ariane6_real_t t64 = t49 + t63;
+    const ariane6_real_t t64 = t49 + t63; /* link j4: motion */
     out[9] = t46 * t64 - t50 * t61;
-    const ariane6_real_t t65 = t47 * t48;
+    const ariane6_real_t t65 = t47 * t48; /* link j3: motion */
     const ariane6_real_t t66 = t38 * t40;
-    const ariane6_real_t t67 = t20 * (t65 - t66);
+    const ariane6_real_t t67 = t20 * (t65 - t66); /* link j3: columns */
     out[63] = t67;
     out[117] = t60 * t67;
-    const ariane6_real_t t68 = ddq_r[1] + ddq_r[2];
-    const ariane6_real_t t69 = t68 - t52;
-    const ariane6_real_t t70 = t41 * t39;
+    const ariane6_real_t t68 = ddq_r[1] + ddq_r[2]; /* link j3: motion */
+    const ariane6_real_t t69 = t68 - t52; /* link j4: motion */
+    const ariane6_real_t t70 = t41 * t39; /* link j3: motion */
     out[10] = t46 * t69 + t50 * (t65 - t70);
-    const ariane6_real_t t71 = t20 * t44;
+    const ariane6_real_t t71 = t20 * t44; /* link j3: columns */
     out[64] = t71;
     out[118] = t60 * t71;
-    const ariane6_real_t t72 = t68 + t52;
+    const ariane6_real_t t72 = t68 + t52; /* link j4: motion */
     out[11] = t46 * (t66 - t70) - t50 * t72;
-    const ariane6_real_t t73 = t20 * t62;
+    const ariane6_real_t t73 = t20 * t62; /* link j3: columns */
     out[65] = -t73;
     out[119] = -(t60 * t73);
     out[12] = t46 * t42 - t51;
     const ariane6_real_t t74 = t20 * t68;
     out[66] = t74;
     out[120] = t60 * t74;
-    const ariane6_real_t t75 = ARIANE6_C(-0.685) * t15 - t29;
-    const ariane6_real_t t76 = t30 + ARIANE6_C(-0.685) * t24;
+    const ariane6_real_t t75 = ARIANE6_C(-0.685) * t15 - t29; /* link j3: velocities by those of the joints */
+    const ariane6_real_t t76 = t30 + ARIANE6_C(-0.685) * t24; /* link j3: motion */
     out[13] = t50 * t76 - t75 * t64;
-    const ariane6_real_t t77 = ARIANE6_C(-0.685) * t20;
+    const ariane6_real_t t77 = ARIANE6_C(-0.685) * t20; /* link j3: velocities by those of the joints */
     const ariane6_real_t t78 = t35 * t77;
-    const ariane6_real_t t79 = t66 + t70;
-    const ariane6_real_t t80 = t36 * t77;
-    const ariane6_real_t t81 = t34 + ARIANE6_C(0.685) * (t26 + t28);
+    const ariane6_real_t t79 = t66 + t70; /* link j4: motion */
+    const ariane6_real_t t80 = t36 * t77; /* link j3: velocities by those of the joints */
+    const ariane6_real_t t81 = t34 + ARIANE6_C(0.685) * (t26 + t28); /* link j3: motion */
     const ariane6_real_t t82 = t33 + ARIANE6_C(0.685) * t27;
     const ariane6_real_t t83 = t35 * t81 + t36 * t82;
-    const ariane6_real_t t84 = t20 * t83;
+    const ariane6_real_t t84 = t20 * t83; /* link j3: columns */
     out[67] = t78 * t79 - t80 * t69 + t84;
     out[121] = t60 * t84;
     out[14] = t75 * t61 + t46 * t76;
-    const ariane6_real_t t85 = t65 + t70;
-    const ariane6_real_t t86 = t36 * t81 - t35 * t82;
-    const ariane6_real_t t87 = t20 * t86;
+    const ariane6_real_t t85 = t65 + t70; /* link j4: motion */
+    const ariane6_real_t t86 = t36 * t81 - t35 * t82; /* link j3: motion */
+    const ariane6_real_t t87 = t20 * t86; /* link j3: columns */
     out[68] = t78 * t72 + t80 * t85 + t87;
     out[122] = t60 * t87;
-    const ariane6_real_t t90 = t88 * t72 - t89 * t61;
+    const ariane6_real_t t90 = t88 * t72 - t89 * t61; /* link j4: motion */
     const ariane6_real_t t91 = t89 * t41 + t88 * t47;
     const ariane6_real_t t92 = t40 - dq_r[3];
     const ariane6_real_t t93 = dq[3] - t38;
     const ariane6_real_t t94 = t88 * t48 + t89 * t39;
     const ariane6_real_t t95 = ARIANE6_C(0.5) * (t93 * t94 - t91 * t92);
     const ariane6_real_t t96 = t90 + t95;
-    const ariane6_real_t t97 = t89 * t46;
-    const ariane6_real_t t98 = t89 * t47 - t88 * t41;
+    const ariane6_real_t t97 = t89 * t46; /* link j4: velocities by those of the joints */
+    const ariane6_real_t t98 = t89 * t47 - t88 * t41; /* link j4: motion */
     const ariane6_real_t t99 = t89 * t48 - t88 * t39;
     const ariane6_real_t t100 = ARIANE6_C(0.5) * (t93 * t99 - t98 * t92);
-    const ariane6_real_t t101 = t88 * t46;
-    const ariane6_real_t t102 = t101 * t100;
-    const ariane6_real_t t103 = t98 * t94 + t91 * t99;
+    const ariane6_real_t t101 = t88 * t46; /* link j4: velocities by those of the joints */
+    const ariane6_real_t t102 = t101 * t100; /* link j4: columns */
+    const ariane6_real_t t103 = t98 * t94 + t91 * t99; /* link j4: motion */
     const ariane6_real_t t104 = ARIANE6_C(-0.5) * t103;
     out[15] = t50 * t104 - t102 - t97 * t96;
-    const ariane6_real_t t105 = t88 * t20;
+    const ariane6_real_t t105 = t88 * t20; /* link j4: velocities by those of the joints */
     const ariane6_real_t t106 = t89 * t20;
-    const ariane6_real_t t107 = t106 * t100;
+    const ariane6_real_t t107 = t106 * t100; /* link j4: columns */
     const ariane6_real_t t108 = t105 * t96 - t107;
     out[69] = t108;
     out[123] = t60 * t108;
     out[177] = ARIANE6_C(0.1) * t103;
-    const ariane6_real_t t109 = t95 + t96;
-    const ariane6_real_t t110 = t89 * t72 + t88 * t61;
+    const ariane6_real_t t109 = t95 + t96; /* link j5: motion */
+    const ariane6_real_t t110 = t89 * t72 + t88 * t61; /* link j4: motion */
     const ariane6_real_t t111 = t110 + t100;
-    const ariane6_real_t t112 = t100 + t111;
-    const ariane6_real_t t113 = t98 * t99;
+    const ariane6_real_t t112 = t100 + t111; /* link j5: motion */
+    const ariane6_real_t t113 = t98 * t99; /* link j4: motion */
     const ariane6_real_t t114 = t91 * t94;
-    const ariane6_real_t t115 = t114 - t113;
+    const ariane6_real_t t115 = t114 - t113; /* link j4: columns */
     out[16] = t101 * t109 - t97 * t112 + t50 * t115;
     const ariane6_real_t t116 = t106 * t109 + t105 * t112;
     out[70] = t116;
     out[124] = t60 * t116;
     out[178] = ARIANE6_C(-0.2) * t115;
-    const ariane6_real_t t117 = ddq_r[3] + t63;
-    const ariane6_real_t t118 = t117 + t104;
-    const ariane6_real_t t119 = t93 * t92;
-    const ariane6_real_t t120 = t113 + t119;
+    const ariane6_real_t t117 = ddq_r[3] + t63; /* link j4: motion */
+    const ariane6_real_t t118 = t117 + t104; /* link j5: motion */
+    const ariane6_real_t t119 = t93 * t92; /* link j4: motion */
+    const ariane6_real_t t120 = t113 + t119; /* link j4: columns */
     out[17] = t97 * t118 + t50 * t90 + t101 * t120;
     const ariane6_real_t t121 = t106 * t120 - t105 * t118;
     out[71] = t121;
     out[125] = t60 * t121;
     out[179] = ARIANE6_C(-0.2) * t90;
-    const ariane6_real_t t122 = t104 - t117;
-    const ariane6_real_t t123 = t114 + t119;
+    const ariane6_real_t t122 = t104 - t117; /* link j5: motion */
+    const ariane6_real_t t123 = t114 + t119; /* link j4: columns */
     out[18] = t50 * t110 + t101 * t122 + t97 * t123;
     const ariane6_real_t t124 = t106 * t122 - t105 * t123;
     out[72] = t124;
@@ -251,25 +254,28 @@ int ariane6_slotine_li_regressor(
     out[73] = t125;
     out[127] = t60 * t125;
     out[181] = ARIANE6_C(0.2) * t117;
-    const ariane6_real_t t126 = t86 + (ARIANE6_C(-0.17) * t79 + ARIANE6_C(0.488) * t72);
+    const ariane6_real_t t126 = t86 + (ARIANE6_C(-0.17) * t79 + ARIANE6_C(0.488) * t72); /* link j4: motion */
     const ariane6_real_t t127 = t76 + (ARIANE6_C(0.17) * t64 + ARIANE6_C(0.488) * t61);
     const ariane6_real_t t128 = t89 * t127 - t88 * t126;
     const ariane6_real_t t129 = t83 + (ARIANE6_C(-0.17) * t69 + ARIANE6_C(-0.488) * t85);
-    const ariane6_real_t t130 = t119 - t114;
+    const ariane6_real_t t130 = t119 - t114; /* link j5: motion */
+    /* link j4: velocities by those of the joints */
     const ariane6_real_t t131 = t75 + (ARIANE6_C(0.488) * t46 + ARIANE6_C(-0.17) * t50);
+    /* link j4: columns */
     const ariane6_real_t t132 = t101 * t129 + t50 * t128 - t131 * (t88 * t130 + t89 * t118);
     out[20] = t132;
     const ariane6_real_t t133 = t88 * t118 - t89 * t130;
-    const ariane6_real_t t134 = ARIANE6_C(0.488) * t20;
+    const ariane6_real_t t134 = ARIANE6_C(0.488) * t20; /* link j4: velocities by those of the joints */
     const ariane6_real_t t135 = t78 + t134;
     const ariane6_real_t t136 = ARIANE6_C(0.17) * t20;
     const ariane6_real_t t137 = t80 + t136;
-    const ariane6_real_t t138 = t106 * t129;
+    const ariane6_real_t t138 = t106 * t129; /* link j4: columns */
     out[74] = t135 * t133 - t137 * t112 + t138;
     out[128] = t60 * (t138 + (t134 * t133 - t136 * t112));
     out[182] = ARIANE6_C(-0.2) * t128;
-    const ariane6_real_t t139 = t89 * t126 + t88 * t127;
-    const ariane6_real_t t140 = t119 - t113;
+    const ariane6_real_t t139 = t89 * t126 + t88 * t127; /* link j4: motion */
+    const ariane6_real_t t140 = t119 - t113; /* link j5: motion */
+    /* link j4: columns */
     const ariane6_real_t t141 = t97 * t129 - t50 * t139 - t131 * (t88 * t122 + t89 * t140);
     out[21] = t141;
     const ariane6_real_t t142 = t88 * t140 - t89 * t122;
@@ -277,59 +283,60 @@ int ariane6_slotine_li_regressor(
     out[75] = t135 * t142 + t137 * t109 - t143;
     out[129] = t60 * (t134 * t142 + t136 * t109 - t143);
     out[183] = ARIANE6_C(0.2) * t139;
-    const ariane6_real_t t146 = t145 * t122 + t144 * t109;
+    const ariane6_real_t t146 = t145 * t122 + t144 * t109; /* link j5: motion */
     const ariane6_real_t t147 = t145 * t98 - t144 * t93;
     const ariane6_real_t t148 = dq_r[4] + t94;
     const ariane6_real_t t149 = t145 * t99 + t144 * t92;
     const ariane6_real_t t150 = dq[4] + t91;
     const ariane6_real_t t151 = ARIANE6_C(-0.5) * (t147 * t148 + t150 * t149);
     const ariane6_real_t t152 = t146 - t151;
-    const ariane6_real_t t153 = t144 * t97 - t145 * t50;
-    const ariane6_real_t t154 = t144 * t98 + t145 * t93;
+    const ariane6_real_t t153 = t144 * t97 - t145 * t50; /* link j5: velocities by those of the joints */
+    const ariane6_real_t t154 = t144 * t98 + t145 * t93; /* link j5: motion */
     const ariane6_real_t t155 = t145 * t92 - t144 * t99;
     const ariane6_real_t t156 = ARIANE6_C(0.5) * (t154 * t149 - t147 * t155);
     const ariane6_real_t t157 = ARIANE6_C(0.5) * (t150 * t155 - t154 * t148);
-    const ariane6_real_t t158 = t145 * t97 + t144 * t50;
-    const ariane6_real_t t159 = t158 * t157;
+    const ariane6_real_t t158 = t145 * t97 + t144 * t50; /* link j5: velocities by those of the joints */
+    const ariane6_real_t t159 = t158 * t157; /* link j5: columns */
     out[22] = t159 + t101 * t156 - t153 * t152;
-    const ariane6_real_t t160 = t144 * t105;
+    const ariane6_real_t t160 = t144 * t105; /* link j5: velocities by those of the joints */
     const ariane6_real_t t161 = t145 * t105;
-    const ariane6_real_t t162 = t161 * t157;
+    const ariane6_real_t t162 = t161 * t157; /* link j5: columns */
     const ariane6_real_t t163 = t160 * t152 - (t162 - t106 * t156);
     out[76] = t163;
     out[130] = t60 * t163;
-    const ariane6_real_t t164 = ARIANE6_C(0.2) * t145;
+    const ariane6_real_t t164 = ARIANE6_C(0.2) * t145; /* link j5: velocities by those of the joints */
     const ariane6_real_t t165 = ARIANE6_C(-0.2) * t144;
-    const ariane6_real_t t166 = t165 * t157;
+    const ariane6_real_t t166 = t165 * t157; /* link j5: columns */
     out[184] = t166 - t164 * t152;
+    /* joint j5: drive */
     const ariane6_real_t t167 = ARIANE6_SQRT(ARIANE6_C(0.035496) * t145 + ARIANE6_C(0.097));
     const ariane6_real_t t168 = ARIANE6_C(0.07043047103899029) * t167 / t144;
     out[238] = t168 * t156;
-    const ariane6_real_t t169 = t152 - t151;
-    const ariane6_real_t t170 = t145 * t109 - t144 * t122;
+    const ariane6_real_t t169 = t152 - t151; /* link j6: motion */
+    const ariane6_real_t t170 = t145 * t109 - t144 * t122; /* link j5: motion */
     const ariane6_real_t t171 = t170 + t157;
-    const ariane6_real_t t172 = t157 + t171;
-    const ariane6_real_t t173 = t154 * t155;
+    const ariane6_real_t t172 = t157 + t171; /* link j6: motion */
+    const ariane6_real_t t173 = t154 * t155; /* link j5: motion */
     const ariane6_real_t t174 = t147 * t149;
-    const ariane6_real_t t175 = t173 + t174;
+    const ariane6_real_t t175 = t173 + t174; /* link j5: columns */
     out[23] = t158 * t169 + t153 * t172 - t101 * t175;
     const ariane6_real_t t176 = t161 * t169 + t160 * t172 + t106 * t175;
     out[77] = -t176;
     out[131] = -(t60 * t176);
     out[185] = t165 * t169 + t164 * t172;
     out[239] = -(t168 * t175);
-    const ariane6_real_t t177 = ddq_r[4] + t111;
-    const ariane6_real_t t178 = t177 - t156;
-    const ariane6_real_t t179 = t150 * t148;
-    const ariane6_real_t t180 = t173 + t179;
+    const ariane6_real_t t177 = ddq_r[4] + t111; /* link j5: motion */
+    const ariane6_real_t t178 = t177 - t156; /* link j6: motion */
+    const ariane6_real_t t179 = t150 * t148; /* link j5: motion */
+    const ariane6_real_t t180 = t173 + t179; /* link j5: columns */
     out[24] = t153 * t178 - t101 * t146 - t158 * t180;
     const ariane6_real_t t181 = t161 * t180 - (t160 * t178 + t106 * t146);
     out[78] = t181;
     out[132] = t60 * t181;
     out[186] = t164 * t178 - t165 * t180;
     out[240] = -(t168 * t146);
-    const ariane6_real_t t182 = t177 + t156;
-    const ariane6_real_t t183 = t174 - t179;
+    const ariane6_real_t t182 = t177 + t156; /* link j6: motion */
+    const ariane6_real_t t183 = t174 - t179; /* link j5: columns */
     out[25] = t153 * t183 - (t158 * t182 - t101 * t170);
     const ariane6_real_t t184 = t106 * t170 + t161 * t182 - t160 * t183;
     out[79] = t184;
@@ -342,9 +349,9 @@ int ariane6_slotine_li_regressor(
     out[134] = t60 * t185;
     out[188] = t164 * t151 - t166;
     out[242] = t168 * t177;
-    const ariane6_real_t t186 = t145 * t139 + t144 * t129;
-    const ariane6_real_t t187 = t174 + t179;
-    const ariane6_real_t t188 = t144 * t187 + t145 * t178;
+    const ariane6_real_t t186 = t145 * t139 + t144 * t129; /* link j5: motion */
+    const ariane6_real_t t187 = t174 + t179; /* link j6: motion */
+    const ariane6_real_t t188 = t144 * t187 + t145 * t178; /* link j5: columns */
     const ariane6_real_t t189 = t158 * t128 + t101 * t186 - t131 * (t89 * t172 - t88 * t188);
     out[27] = t189;
     const ariane6_real_t t190 = t89 * t188 + t88 * t172;
@@ -354,9 +361,9 @@ int ariane6_slotine_li_regressor(
     out[135] = t60 * (t192 + (t134 * t190 - t136 * t191));
     out[189] = t165 * t128;
     out[243] = t168 * t186;
-    const ariane6_real_t t193 = t144 * t139 - t145 * t129;
-    const ariane6_real_t t194 = t179 - t173;
-    const ariane6_real_t t195 = t145 * t194 - t144 * t182;
+    const ariane6_real_t t193 = t144 * t139 - t145 * t129; /* link j5: motion */
+    const ariane6_real_t t194 = t179 - t173; /* link j6: motion */
+    const ariane6_real_t t195 = t145 * t194 - t144 * t182; /* link j5: columns */
     const ariane6_real_t t196 = t153 * t128 + t101 * t193 - t131 * (t88 * t195 + t89 * t169);
     out[28] = t196;
     const ariane6_real_t t197 = t88 * t169 - t89 * t195;
@@ -366,43 +373,43 @@ int ariane6_slotine_li_regressor(
     out[136] = t60 * (t199 + (t134 * t197 + t136 * t198));
     out[190] = t164 * t128;
     out[244] = t168 * t193;
-    const ariane6_real_t t202 = t200 * t182 + t201 * t169;
+    const ariane6_real_t t202 = t200 * t182 + t201 * t169; /* link j6: motion */
     const ariane6_real_t t203 = t200 * t154 + t201 * t150;
     const ariane6_real_t t204 = t149 - dq_r[5];
     const ariane6_real_t t205 = t147 - dq[5];
     const ariane6_real_t t206 = t201 * t148 - t200 * t155;
     const ariane6_real_t t207 = ARIANE6_C(-0.5) * (t203 * t204 + t205 * t206);
     const ariane6_real_t t208 = t202 + t207;
-    const ariane6_real_t t209 = t201 * t153 - t200 * t101;
-    const ariane6_real_t t210 = t200 * t150 - t201 * t154;
+    const ariane6_real_t t209 = t201 * t153 - t200 * t101; /* link j6: velocities by those of the joints */
+    const ariane6_real_t t210 = t200 * t150 - t201 * t154; /* link j6: motion */
     const ariane6_real_t t211 = t201 * t155 + t200 * t148;
     const ariane6_real_t t212 = ARIANE6_C(-0.5) * (t210 * t204 + t205 * t211);
-    const ariane6_real_t t213 = t200 * t153 + t201 * t101;
-    const ariane6_real_t t214 = t213 * t212;
-    const ariane6_real_t t215 = t210 * t206 + t203 * t211;
+    const ariane6_real_t t213 = t200 * t153 + t201 * t101; /* link j6: velocities by those of the joints */
+    const ariane6_real_t t214 = t213 * t212; /* link j6: columns */
+    const ariane6_real_t t215 = t210 * t206 + t203 * t211; /* link j6: motion */
     const ariane6_real_t t216 = ARIANE6_C(0.5) * t215;
     out[29] = t214 + t158 * t216 - t209 * t208;
-    const ariane6_real_t t217 = t201 * t160 + t200 * t106;
+    const ariane6_real_t t217 = t201 * t160 + t200 * t106; /* link j6: velocities by those of the joints */
     const ariane6_real_t t218 = t201 * t106 - t200 * t160;
-    const ariane6_real_t t219 = t218 * t212;
+    const ariane6_real_t t219 = t218 * t212; /* link j6: columns */
     const ariane6_real_t t220 = t217 * t208 - (t161 * t216 - t219);
     out[83] = t220;
     out[137] = t60 * t220;
-    const ariane6_real_t t221 = t201 * t164;
+    const ariane6_real_t t221 = t201 * t164; /* link j6: velocities by those of the joints */
     const ariane6_real_t t222 = t200 * t164;
-    const ariane6_real_t t223 = t222 * t212;
+    const ariane6_real_t t223 = t222 * t212; /* link j6: columns */
     out[191] = t223 + t165 * t216 - t221 * t208;
-    const ariane6_real_t t224 = t200 * t168;
+    const ariane6_real_t t224 = t200 * t168; /* link j6: velocities by those of the joints */
     const ariane6_real_t t225 = t201 * t168;
-    const ariane6_real_t t226 = t225 * t212;
+    const ariane6_real_t t226 = t225 * t212; /* link j6: columns */
     out[245] = t224 * t208 + t226;
     out[299] = ARIANE6_C(-0.1) * t215;
     const ariane6_real_t t227 = t207 + t208;
-    const ariane6_real_t t228 = t200 * t169 - t201 * t182;
-    const ariane6_real_t t229 = t212 + (t228 + t212);
-    const ariane6_real_t t230 = t210 * t211;
+    const ariane6_real_t t228 = t200 * t169 - t201 * t182; /* link j6: motion */
+    const ariane6_real_t t229 = t212 + (t228 + t212); /* link j6: columns */
+    const ariane6_real_t t230 = t210 * t211; /* link j6: motion */
     const ariane6_real_t t231 = t203 * t206;
-    const ariane6_real_t t232 = t230 - t231;
+    const ariane6_real_t t232 = t230 - t231; /* link j6: columns */
     out[30] = t213 * t227 + t209 * t229 - t158 * t232;
     const ariane6_real_t t233 = t161 * t232 - (t217 * t229 - t218 * t227);
     out[84] = t233;
@@ -410,10 +417,10 @@ int ariane6_slotine_li_regressor(
     out[192] = t222 * t227 + t221 * t229 - t165 * t232;
     out[246] = t225 * t227 - t224 * t229;
     out[300] = ARIANE6_C(0.2) * t232;
-    const ariane6_real_t t234 = ddq_r[5] + t171;
-    const ariane6_real_t t235 = t234 + t216;
-    const ariane6_real_t t236 = t205 * t204;
-    const ariane6_real_t t237 = t230 - t236;
+    const ariane6_real_t t234 = ddq_r[5] + t171; /* link j6: motion */
+    const ariane6_real_t t235 = t234 + t216; /* link j6: columns */
+    const ariane6_real_t t236 = t205 * t204; /* link j6: motion */
+    const ariane6_real_t t237 = t230 - t236; /* link j6: columns */
     out[31] = t209 * t235 + t158 * t202 + t213 * t237;
     const ariane6_real_t t238 = t218 * t237 - (t217 * t235 + t161 * t202);
     out[85] = t238;
@@ -441,7 +448,8 @@ int ariane6_slotine_li_regressor(
     const ariane6_real_t t244 = t201 * t243 + t200 * t235;
     const ariane6_real_t t245 = t145 * t229 - t144 * t244;
     const ariane6_real_t t246 = t201 * t235 - t200 * t243;
-    const ariane6_real_t t247 = t200 * t193 - t201 * t128;
+    const ariane6_real_t t247 = t200 * t193 - t201 * t128; /* link j6: motion */
+    /* link j6: columns */
     const ariane6_real_t t248 = t213 * t186 - t158 * t247 - t131 * (t88 * t245 + t89 * t246);
     out[34] = t248;
     const ariane6_real_t t249 = t89 * t245 - t88 * t246;
@@ -456,7 +464,8 @@ int ariane6_slotine_li_regressor(
     const ariane6_real_t t253 = t201 * t239 + t200 * t252;
     const ariane6_real_t t254 = t144 * t253 + t145 * t227;
     const ariane6_real_t t255 = t200 * t239 - t201 * t252;
-    const ariane6_real_t t256 = t201 * t193 + t200 * t128;
+    const ariane6_real_t t256 = t201 * t193 + t200 * t128; /* link j6: motion */
+    /* link j6: columns */
     const ariane6_real_t t257 = t209 * t186 - t158 * t256 - t131 * (t88 * t254 + t89 * t255);
     out[35] = t257;
     const ariane6_real_t t258 = t88 * t255 - t89 * t254;
@@ -467,48 +476,52 @@ int ariane6_slotine_li_regressor(
     out[197] = t221 * t186 - t165 * t256;
     out[251] = -(t224 * t186);
     out[305] = ARIANE6_C(0.2) * t256;
-    const ariane6_real_t t261 = ARIANE6_C(-1.0) / t1;
+    const ariane6_real_t t261 = ARIANE6_C(-1.0) / t1; /* joint j1: drive */
     const ariane6_real_t t262 = t2 * (ARIANE6_C(-4063.3400000000006) * t261);
     const ariane6_real_t t263 = t262 * dq[0];
     out[36] = ARIANE6_C(250.0) * t263;
-    const ariane6_real_t t264 = ariane6_sign(t263);
+    const ariane6_real_t t264 = ariane6_sign(t263); /* joint j1: coulomb_friction */
     out[37] = ARIANE6_C(250.0) * t264;
+    /* joint j1: drive */
     const ariane6_real_t t265 = ARIANE6_C(-4063.3400000000006) * t0
         + ARIANE6_C(-82.55365977800001) * (t261 * t261) * (t2 * t2);
     out[38] = ARIANE6_C(250.0) * (t262 * ddq_r[0] - t261 * t265 * t31);
     const ariane6_real_t t266 = t59 * dq[1];
     out[93] = ARIANE6_C(250.0) * t266;
-    const ariane6_real_t t267 = ariane6_sign(t266);
+    const ariane6_real_t t267 = ariane6_sign(t266); /* joint j2: coulomb_friction */
     out[94] = ARIANE6_C(250.0) * t267;
+    /* joint j2: drive */
     const ariane6_real_t t268 = ARIANE6_C(12691.800000000003) * t17
         + ARIANE6_C(-805.4089362000002) * (t58 * t58) * (t19 * t19);
     out[95] = ARIANE6_C(250.0) * (t59 * ddq_r[1] + t58 * t268 * t28);
-    const ariane6_real_t t269 = ARIANE6_C(1.0) / t55;
+    const ariane6_real_t t269 = ARIANE6_C(1.0) / t55; /* joint j3: drive */
     const ariane6_real_t t270 = t56 * (ARIANE6_C(8377.600000000002) * t269);
     const ariane6_real_t t271 = t270 * dq[2];
     out[150] = ARIANE6_C(250.0) * t271;
-    const ariane6_real_t t272 = ariane6_sign(t271);
+    const ariane6_real_t t272 = ariane6_sign(t271); /* joint j3: coulomb_friction */
     out[151] = ARIANE6_C(250.0) * t272;
+    /* joint j3: drive */
     const ariane6_real_t t273 = ARIANE6_C(8377.600000000002) * t54
         + ARIANE6_C(-350.9209088000001) * (t269 * t269) * (t56 * t56);
     const ariane6_real_t t274 = ARIANE6_C(250.0) * (t270 * ddq_r[2] + t269 * t273 * (dq[2] * dq_r[2]));
     out[152] = t274;
     out[207] = ARIANE6_C(2.0e3) * dq[3];
-    const ariane6_real_t t275 = ariane6_sign(dq[3]);
+    const ariane6_real_t t275 = ariane6_sign(dq[3]); /* joint j4: coulomb_friction */
     out[208] = ARIANE6_C(20.0) * t275;
     out[209] = ARIANE6_C(2.0e3) * ddq_r[3];
-    const ariane6_real_t t276 = ARIANE6_C(-1.0) / t167;
+    const ariane6_real_t t276 = ARIANE6_C(-1.0) / t167; /* joint j5: drive */
     const ariane6_real_t t277 = t144 * (ARIANE6_C(-3549.6000000000004) * t276);
     const ariane6_real_t t278 = t277 * dq[4];
     out[264] = ARIANE6_C(250.0) * t278;
-    const ariane6_real_t t279 = ariane6_sign(t278);
+    const ariane6_real_t t279 = ariane6_sign(t278); /* joint j5: coulomb_friction */
     out[265] = ARIANE6_C(250.0) * t279;
+    /* joint j5: drive */
     const ariane6_real_t t280 = ARIANE6_C(-3549.6000000000004) * t145
         + ARIANE6_C(-62.9983008) * (t276 * t276) * (t144 * t144);
     const ariane6_real_t t281 = ARIANE6_C(250.0) * (t277 * ddq_r[4] - t276 * t280 * (dq[4] * dq_r[4]));
     out[266] = t281;
     out[321] = ARIANE6_C(2.0e3) * dq[5];
-    const ariane6_real_t t282 = ariane6_sign(dq[5]);
+    const ariane6_real_t t282 = ariane6_sign(dq[5]); /* joint j6: coulomb_friction */
     out[322] = ARIANE6_C(20.0) * t282;
     out[323] = ARIANE6_C(2.0e3) * ddq_r[5];
     /* always zero */

@@ -13,7 +13,8 @@
  *
  * Every function returns GRAVITY_ARM_STATUS_OK, or the sum of the GRAVITY_ARM_STATUS_ bits that apply; all of
  * its outputs are then zero. Inputs are checked by their Euclidean norm, so one that is not finite is
- * found too (not with -ffast-math). Outputs may not overlap inputs. Matrices are row-major.
+ * found too (not with -ffast-math). Outputs may not overlap inputs. Matrices are row-major. In the sources a
+ * remark behind a value says which link or joint it belongs to, and those after it up to the next remark.
  *
  * Coordinates:
  *
@@ -37,7 +38,7 @@
 #define GRAVITY_ARM_H
 
 /** Number of this generation: header and sources of different ones do not compile together. */
-#define GRAVITY_ARM_GENERATION 0x88D1AC10UL
+#define GRAVITY_ARM_GENERATION 0xB6EDED96UL
 
 /** SHA-256 of the description that this is the model of, then after a blank the description's version, if any. */
 #define GRAVITY_ARM_MODEL "61deec9d45de431e2e63e171a7898e38e261561ed5e7a2fea1451953288e9321"
@@ -89,6 +90,8 @@
 #define gravity_arm_forward_dynamics_derivatives gravity_arm_forward_dynamics_derivatives_float
 #define gravity_arm_inverse_dynamics_derivatives_standard gravity_arm_inverse_dynamics_derivatives_standard_float
 #define gravity_arm_forward_dynamics_derivatives_standard gravity_arm_forward_dynamics_derivatives_standard_float
+#define gravity_arm_momentum_observer_step gravity_arm_momentum_observer_step_float
+#define gravity_arm_momentum_observer_step_standard gravity_arm_momentum_observer_step_standard_float
 #define gravity_arm_check_parameters gravity_arm_check_parameters_float
 #define gravity_arm_check_parameters_standard gravity_arm_check_parameters_standard_float
 #define gravity_arm_model gravity_arm_model_float
@@ -108,11 +111,16 @@ typedef GRAVITY_ARM_REAL gravity_arm_real_t;
 #define GRAVITY_ARM_N_PARAMETERS           10  /**< base parameters */
 #define GRAVITY_ARM_N_STANDARD_PARAMETERS  24  /**< standard parameters */
 #define GRAVITY_ARM_N_PACKED               13  /**< structural non-zeros of the regressor */
+#define GRAVITY_ARM_N_OBSERVER_STATES      2   /**< state of the observer: the momentum that the model
+                                               expects */
 
-#define GRAVITY_ARM_STATUS_OK     0
-#define GRAVITY_ARM_STATUS_STROKE 1 /**< a lever would leave its stroke */
-#define GRAVITY_ARM_STATUS_PIVOT  2 /**< a pivot of the mass matrix vanishes, or the result is beyond 1e15 */
-#define GRAVITY_ARM_STATUS_INPUT  4 /**< an input is not finite or beyond its bound */
+/** GRAVITY_ARM_STATUS_OK or bits of the others. */
+typedef unsigned int gravity_arm_status_t;
+
+#define GRAVITY_ARM_STATUS_OK     0U
+#define GRAVITY_ARM_STATUS_STROKE 1U /**< a lever would leave its stroke */
+#define GRAVITY_ARM_STATUS_PIVOT  2U /**< a pivot of the mass matrix vanishes, or the result is beyond 1e15 */
+#define GRAVITY_ARM_STATUS_INPUT  4U /**< an input is not finite or beyond its bound */
 
 /** Indices of the base parameters. */
 enum {
@@ -174,7 +182,7 @@ const char *gravity_arm_model(void);
  *
  * @return GRAVITY_ARM_STATUS_OK or GRAVITY_ARM_STATUS_INPUT
  */
-int gravity_arm_check_parameters(const gravity_arm_real_t parameters[GRAVITY_ARM_N_PARAMETERS]);
+gravity_arm_status_t gravity_arm_check_parameters(const gravity_arm_real_t parameters[GRAVITY_ARM_N_PARAMETERS]);
 
 /**
  * Whether standard parameters can be used: finite, and their norm within its bound. Every function that takes them checks
@@ -182,7 +190,7 @@ int gravity_arm_check_parameters(const gravity_arm_real_t parameters[GRAVITY_ARM
  *
  * @return GRAVITY_ARM_STATUS_OK or GRAVITY_ARM_STATUS_INPUT
  */
-int gravity_arm_check_parameters_standard(const gravity_arm_real_t parameters[GRAVITY_ARM_N_STANDARD_PARAMETERS]);
+gravity_arm_status_t gravity_arm_check_parameters_standard(const gravity_arm_real_t parameters[GRAVITY_ARM_N_STANDARD_PARAMETERS]);
 
 /**
  * Inputs that give the accelerations ddq in the state q, dq; base parameters.
@@ -194,9 +202,9 @@ int gravity_arm_check_parameters_standard(const gravity_arm_real_t parameters[GR
  * @param[out]  out         [2]   [N m]      inputs: motor currents, efforts where undriven
  * @return GRAVITY_ARM_STATUS_OK or status bits
  *
- * Operations: 46 (27 mul, 19 add, 0 neg), 4 trig, 2 other.
+ * Operations: 46 (27 mul, 19 add, 0 neg), 4 trig, 2 other calls (sign, select and the like).
  */
-int gravity_arm_inverse_dynamics(
+gravity_arm_status_t gravity_arm_inverse_dynamics(
     const gravity_arm_real_t q[GRAVITY_ARM_N_JOINTS],
     const gravity_arm_real_t dq[GRAVITY_ARM_N_JOINTS],
     const gravity_arm_real_t ddq[GRAVITY_ARM_N_JOINTS],
@@ -213,7 +221,7 @@ int gravity_arm_inverse_dynamics(
  *
  * Operations: 15 (10 mul, 5 add, 0 neg), 4 trig.
  */
-int gravity_arm_gravity(
+gravity_arm_status_t gravity_arm_gravity(
     const gravity_arm_real_t q[GRAVITY_ARM_N_JOINTS],
     const gravity_arm_real_t parameters[GRAVITY_ARM_N_PARAMETERS],
     gravity_arm_real_t out[GRAVITY_ARM_N_JOINTS]);
@@ -227,9 +235,9 @@ int gravity_arm_gravity(
  * @param[out]  out         [2]   [N m]    inputs: motor currents, efforts where undriven
  * @return GRAVITY_ARM_STATUS_OK or status bits
  *
- * Operations: 35 (22 mul, 13 add, 0 neg), 4 trig, 2 other.
+ * Operations: 35 (22 mul, 13 add, 0 neg), 4 trig, 2 other calls (sign, select and the like).
  */
-int gravity_arm_bias(
+gravity_arm_status_t gravity_arm_bias(
     const gravity_arm_real_t q[GRAVITY_ARM_N_JOINTS],
     const gravity_arm_real_t dq[GRAVITY_ARM_N_JOINTS],
     const gravity_arm_real_t parameters[GRAVITY_ARM_N_PARAMETERS],
@@ -245,7 +253,7 @@ int gravity_arm_bias(
  *
  * Operations: 8 (4 mul, 4 add, 0 neg), 2 trig.
  */
-int gravity_arm_mass_matrix(
+gravity_arm_status_t gravity_arm_mass_matrix(
     const gravity_arm_real_t q[GRAVITY_ARM_N_JOINTS],
     const gravity_arm_real_t parameters[GRAVITY_ARM_N_PARAMETERS],
     gravity_arm_real_t out[GRAVITY_ARM_N_JOINTS * GRAVITY_ARM_N_JOINTS]);
@@ -261,9 +269,9 @@ int gravity_arm_mass_matrix(
  * @param[out]  out         [2]   [rad/s^2]  joint accelerations
  * @return GRAVITY_ARM_STATUS_OK or status bits
  *
- * Operations: 56 (33 mul, 23 add, 0 neg), 2 div, 4 trig, 2 other.
+ * Operations: 56 (33 mul, 23 add, 0 neg), 2 div, 4 trig, 2 other calls (sign, select and the like).
  */
-int gravity_arm_forward_dynamics(
+gravity_arm_status_t gravity_arm_forward_dynamics(
     const gravity_arm_real_t q[GRAVITY_ARM_N_JOINTS],
     const gravity_arm_real_t dq[GRAVITY_ARM_N_JOINTS],
     const gravity_arm_real_t input[GRAVITY_ARM_N_JOINTS],
@@ -282,7 +290,7 @@ int gravity_arm_forward_dynamics(
  *
  * Operations: 32 (23 mul, 9 add, 0 neg), 4 trig.
  */
-int gravity_arm_energy(
+gravity_arm_status_t gravity_arm_energy(
     const gravity_arm_real_t q[GRAVITY_ARM_N_JOINTS],
     const gravity_arm_real_t dq[GRAVITY_ARM_N_JOINTS],
     const gravity_arm_real_t parameters[GRAVITY_ARM_N_PARAMETERS],
@@ -299,9 +307,9 @@ int gravity_arm_energy(
  *                                                          row-major
  * @return GRAVITY_ARM_STATUS_OK or status bits
  *
- * Operations: 26 (16 mul, 10 add, 0 neg), 4 trig, 2 other.
+ * Operations: 26 (16 mul, 10 add, 0 neg), 4 trig, 2 other calls (sign, select and the like).
  */
-int gravity_arm_regressor(
+gravity_arm_status_t gravity_arm_regressor(
     const gravity_arm_real_t q[GRAVITY_ARM_N_JOINTS],
     const gravity_arm_real_t dq[GRAVITY_ARM_N_JOINTS],
     const gravity_arm_real_t ddq[GRAVITY_ARM_N_JOINTS],
@@ -317,9 +325,9 @@ int gravity_arm_regressor(
  *                                                          24, row-major
  * @return GRAVITY_ARM_STATUS_OK or status bits
  *
- * Operations: 29 (18 mul, 11 add, 0 neg), 4 trig, 2 other.
+ * Operations: 29 (18 mul, 11 add, 0 neg), 4 trig, 2 other calls (sign, select and the like).
  */
-int gravity_arm_regressor_standard(
+gravity_arm_status_t gravity_arm_regressor_standard(
     const gravity_arm_real_t q[GRAVITY_ARM_N_JOINTS],
     const gravity_arm_real_t dq[GRAVITY_ARM_N_JOINTS],
     const gravity_arm_real_t ddq[GRAVITY_ARM_N_JOINTS],
@@ -334,9 +342,9 @@ int gravity_arm_regressor_standard(
  * @param[out]  out  [13]  [N m per unit of the parameter]  structural non-zeros, row after row
  * @return GRAVITY_ARM_STATUS_OK or status bits
  *
- * Operations: 26 (16 mul, 10 add, 0 neg), 4 trig, 2 other.
+ * Operations: 26 (16 mul, 10 add, 0 neg), 4 trig, 2 other calls (sign, select and the like).
  */
-int gravity_arm_regressor_packed(
+gravity_arm_status_t gravity_arm_regressor_packed(
     const gravity_arm_real_t q[GRAVITY_ARM_N_JOINTS],
     const gravity_arm_real_t dq[GRAVITY_ARM_N_JOINTS],
     const gravity_arm_real_t ddq[GRAVITY_ARM_N_JOINTS],
@@ -354,9 +362,9 @@ int gravity_arm_regressor_packed(
  *                                                            row-major
  * @return GRAVITY_ARM_STATUS_OK or status bits
  *
- * Operations: 27 (16 mul, 11 add, 0 neg), 4 trig, 2 other.
+ * Operations: 27 (16 mul, 11 add, 0 neg), 4 trig, 2 other calls (sign, select and the like).
  */
-int gravity_arm_slotine_li_regressor(
+gravity_arm_status_t gravity_arm_slotine_li_regressor(
     const gravity_arm_real_t q[GRAVITY_ARM_N_JOINTS],
     const gravity_arm_real_t dq[GRAVITY_ARM_N_JOINTS],
     const gravity_arm_real_t dq_r[GRAVITY_ARM_N_JOINTS],
@@ -373,9 +381,9 @@ int gravity_arm_slotine_li_regressor(
  * @param[out]  out         [2]   [N m]      inputs: motor currents, efforts where undriven
  * @return GRAVITY_ARM_STATUS_OK or status bits
  *
- * Operations: 50 (29 mul, 21 add, 0 neg), 4 trig, 2 other.
+ * Operations: 50 (29 mul, 21 add, 0 neg), 4 trig, 2 other calls (sign, select and the like).
  */
-int gravity_arm_inverse_dynamics_standard(
+gravity_arm_status_t gravity_arm_inverse_dynamics_standard(
     const gravity_arm_real_t q[GRAVITY_ARM_N_JOINTS],
     const gravity_arm_real_t dq[GRAVITY_ARM_N_JOINTS],
     const gravity_arm_real_t ddq[GRAVITY_ARM_N_JOINTS],
@@ -392,7 +400,7 @@ int gravity_arm_inverse_dynamics_standard(
  *
  * Operations: 22 (15 mul, 7 add, 0 neg), 4 trig.
  */
-int gravity_arm_gravity_standard(
+gravity_arm_status_t gravity_arm_gravity_standard(
     const gravity_arm_real_t q[GRAVITY_ARM_N_JOINTS],
     const gravity_arm_real_t parameters[GRAVITY_ARM_N_STANDARD_PARAMETERS],
     gravity_arm_real_t out[GRAVITY_ARM_N_JOINTS]);
@@ -406,9 +414,9 @@ int gravity_arm_gravity_standard(
  * @param[out]  out         [2]   [N m]    inputs: motor currents, efforts where undriven
  * @return GRAVITY_ARM_STATUS_OK or status bits
  *
- * Operations: 39 (24 mul, 15 add, 0 neg), 4 trig, 2 other.
+ * Operations: 39 (24 mul, 15 add, 0 neg), 4 trig, 2 other calls (sign, select and the like).
  */
-int gravity_arm_bias_standard(
+gravity_arm_status_t gravity_arm_bias_standard(
     const gravity_arm_real_t q[GRAVITY_ARM_N_JOINTS],
     const gravity_arm_real_t dq[GRAVITY_ARM_N_JOINTS],
     const gravity_arm_real_t parameters[GRAVITY_ARM_N_STANDARD_PARAMETERS],
@@ -424,7 +432,7 @@ int gravity_arm_bias_standard(
  *
  * Operations: 11 (6 mul, 5 add, 0 neg), 2 trig.
  */
-int gravity_arm_mass_matrix_standard(
+gravity_arm_status_t gravity_arm_mass_matrix_standard(
     const gravity_arm_real_t q[GRAVITY_ARM_N_JOINTS],
     const gravity_arm_real_t parameters[GRAVITY_ARM_N_STANDARD_PARAMETERS],
     gravity_arm_real_t out[GRAVITY_ARM_N_JOINTS * GRAVITY_ARM_N_JOINTS]);
@@ -440,9 +448,9 @@ int gravity_arm_mass_matrix_standard(
  * @param[out]  out         [2]   [rad/s^2]  joint accelerations
  * @return GRAVITY_ARM_STATUS_OK or status bits
  *
- * Operations: 63 (37 mul, 26 add, 0 neg), 2 div, 4 trig, 2 other.
+ * Operations: 63 (37 mul, 26 add, 0 neg), 2 div, 4 trig, 2 other calls (sign, select and the like).
  */
-int gravity_arm_forward_dynamics_standard(
+gravity_arm_status_t gravity_arm_forward_dynamics_standard(
     const gravity_arm_real_t q[GRAVITY_ARM_N_JOINTS],
     const gravity_arm_real_t dq[GRAVITY_ARM_N_JOINTS],
     const gravity_arm_real_t input[GRAVITY_ARM_N_JOINTS],
@@ -461,7 +469,7 @@ int gravity_arm_forward_dynamics_standard(
  *
  * Operations: 40 (28 mul, 12 add, 0 neg), 4 trig.
  */
-int gravity_arm_energy_standard(
+gravity_arm_status_t gravity_arm_energy_standard(
     const gravity_arm_real_t q[GRAVITY_ARM_N_JOINTS],
     const gravity_arm_real_t dq[GRAVITY_ARM_N_JOINTS],
     const gravity_arm_real_t parameters[GRAVITY_ARM_N_STANDARD_PARAMETERS],
@@ -479,7 +487,7 @@ int gravity_arm_energy_standard(
  *
  * Operations: 10 (6 mul, 2 add, 2 neg), 4 trig.
  */
-int gravity_arm_forward_kinematics(
+gravity_arm_status_t gravity_arm_forward_kinematics(
     const gravity_arm_real_t q[GRAVITY_ARM_N_JOINTS],
     gravity_arm_real_t out[16 * GRAVITY_ARM_N_LINKS]);
 
@@ -492,7 +500,7 @@ int gravity_arm_forward_kinematics(
  *
  * Operations: 2 (2 mul, 0 add, 0 neg), 2 trig.
  */
-int gravity_arm_jacobian(
+gravity_arm_status_t gravity_arm_jacobian(
     const gravity_arm_real_t q[GRAVITY_ARM_N_JOINTS],
     gravity_arm_real_t out[6 * GRAVITY_ARM_N_JOINTS]);
 
@@ -509,7 +517,7 @@ int gravity_arm_jacobian(
  *
  * Operations: 0 (0 mul, 0 add, 0 neg).
  */
-int gravity_arm_motor_from_joint(
+gravity_arm_status_t gravity_arm_motor_from_joint(
     const gravity_arm_real_t q[GRAVITY_ARM_N_JOINTS],
     const gravity_arm_real_t dq[GRAVITY_ARM_N_JOINTS],
     const gravity_arm_real_t ddq[GRAVITY_ARM_N_JOINTS],
@@ -530,7 +538,7 @@ int gravity_arm_motor_from_joint(
  *
  * Operations: 0 (0 mul, 0 add, 0 neg).
  */
-int gravity_arm_joint_from_motor(
+gravity_arm_status_t gravity_arm_joint_from_motor(
     const gravity_arm_real_t q_m[GRAVITY_ARM_N_JOINTS],
     const gravity_arm_real_t dq_m[GRAVITY_ARM_N_JOINTS],
     const gravity_arm_real_t ddq_m[GRAVITY_ARM_N_JOINTS],
@@ -541,13 +549,13 @@ int gravity_arm_joint_from_motor(
 /**
  * Joint effort per input.
  *
- * @param[in]   q    [2]  [rad]              joint coordinates; norm at most 10000
- * @param[out]  out  [2]  [(N m) per (N m)]  drive gains K
+ * @param[in]   q    [2]  [rad]          joint coordinates; norm at most 10000
+ * @param[out]  out  [2]  [N m per N m]  drive gains K
  * @return GRAVITY_ARM_STATUS_OK or status bits
  *
  * Operations: 0 (0 mul, 0 add, 0 neg).
  */
-int gravity_arm_drive_gain(
+gravity_arm_status_t gravity_arm_drive_gain(
     const gravity_arm_real_t q[GRAVITY_ARM_N_JOINTS],
     gravity_arm_real_t out[GRAVITY_ARM_N_JOINTS]);
 
@@ -555,19 +563,19 @@ int gravity_arm_drive_gain(
  * Inputs that give the accelerations ddq, and their derivatives; at a kink of a law, as of dry
  * friction at rest, the mean of both sides; base parameters.
  *
- * @param[in]   q             [2]   [rad]                  joint coordinates; norm at most 10000
- * @param[in]   dq            [2]   [rad/s]                joint velocities; norm at most 100000
- * @param[in]   ddq           [2]   [rad/s^2]              joint accelerations; norm at most 1e+08
- * @param[in]   parameters    [10]                         base parameters; norm at most 1e+09
- * @param[out]  input         [2]   [N m]                  inputs: motor currents, efforts where undriven
- * @param[out]  input_by_q    [4]   [(N m) per (rad)]      d input / d q; 2 x 2, row-major
- * @param[out]  input_by_dq   [4]   [(N m) per (rad/s)]    d input / d dq; 2 x 2, row-major
- * @param[out]  input_by_ddq  [4]   [(N m) per (rad/s^2)]  d input / d ddq; 2 x 2, row-major
+ * @param[in]   q             [2]   [rad]                joint coordinates; norm at most 10000
+ * @param[in]   dq            [2]   [rad/s]              joint velocities; norm at most 100000
+ * @param[in]   ddq           [2]   [rad/s^2]            joint accelerations; norm at most 1e+08
+ * @param[in]   parameters    [10]                       base parameters; norm at most 1e+09
+ * @param[out]  input         [2]   [N m]                inputs: motor currents, efforts where undriven
+ * @param[out]  input_by_q    [4]   [N m per rad]        d input / d q; 2 x 2, row-major
+ * @param[out]  input_by_dq   [4]   [N m per (rad/s)]    d input / d dq; 2 x 2, row-major
+ * @param[out]  input_by_ddq  [4]   [N m per (rad/s^2)]  d input / d ddq; 2 x 2, row-major
  * @return GRAVITY_ARM_STATUS_OK or status bits
  *
- * Operations: 92 (57 mul, 35 add, 0 neg), 4 trig, 2 other.
+ * Operations: 92 (57 mul, 35 add, 0 neg), 4 trig, 2 other calls (sign, select and the like).
  */
-int gravity_arm_inverse_dynamics_derivatives(
+gravity_arm_status_t gravity_arm_inverse_dynamics_derivatives(
     const gravity_arm_real_t q[GRAVITY_ARM_N_JOINTS],
     const gravity_arm_real_t dq[GRAVITY_ARM_N_JOINTS],
     const gravity_arm_real_t ddq[GRAVITY_ARM_N_JOINTS],
@@ -587,14 +595,14 @@ int gravity_arm_inverse_dynamics_derivatives(
  *                                                           norm at most 1e+09
  * @param[in]   parameters    [10]                           base parameters; norm at most 1e+09
  * @param[out]  ddq           [2]   [rad/s^2]                joint accelerations
- * @param[out]  ddq_by_q      [4]   [(rad/s^2) per (rad)]    d ddq / d q; 2 x 2, row-major
+ * @param[out]  ddq_by_q      [4]   [(rad/s^2) per rad]      d ddq / d q; 2 x 2, row-major
  * @param[out]  ddq_by_dq     [4]   [(rad/s^2) per (rad/s)]  d ddq / d dq; 2 x 2, row-major
- * @param[out]  ddq_by_input  [4]   [(rad/s^2) per (N m)]    d ddq / d input; 2 x 2, row-major
+ * @param[out]  ddq_by_input  [4]   [(rad/s^2) per N m]      d ddq / d input; 2 x 2, row-major
  * @return GRAVITY_ARM_STATUS_OK or status bits
  *
- * Operations: 132 (82 mul, 50 add, 0 neg), 2 div, 4 trig, 2 other.
+ * Operations: 132 (82 mul, 50 add, 0 neg), 2 div, 4 trig, 2 other calls (sign, select and the like).
  */
-int gravity_arm_forward_dynamics_derivatives(
+gravity_arm_status_t gravity_arm_forward_dynamics_derivatives(
     const gravity_arm_real_t q[GRAVITY_ARM_N_JOINTS],
     const gravity_arm_real_t dq[GRAVITY_ARM_N_JOINTS],
     const gravity_arm_real_t input[GRAVITY_ARM_N_JOINTS],
@@ -608,19 +616,19 @@ int gravity_arm_forward_dynamics_derivatives(
  * Inputs that give the accelerations ddq, and their derivatives; at a kink of a law, as of dry
  * friction at rest, the mean of both sides; standard parameters.
  *
- * @param[in]   q             [2]   [rad]                  joint coordinates; norm at most 10000
- * @param[in]   dq            [2]   [rad/s]                joint velocities; norm at most 100000
- * @param[in]   ddq           [2]   [rad/s^2]              joint accelerations; norm at most 1e+08
- * @param[in]   parameters    [24]                         standard parameters; norm at most 1e+09
- * @param[out]  input         [2]   [N m]                  inputs: motor currents, efforts where undriven
- * @param[out]  input_by_q    [4]   [(N m) per (rad)]      d input / d q; 2 x 2, row-major
- * @param[out]  input_by_dq   [4]   [(N m) per (rad/s)]    d input / d dq; 2 x 2, row-major
- * @param[out]  input_by_ddq  [4]   [(N m) per (rad/s^2)]  d input / d ddq; 2 x 2, row-major
+ * @param[in]   q             [2]   [rad]                joint coordinates; norm at most 10000
+ * @param[in]   dq            [2]   [rad/s]              joint velocities; norm at most 100000
+ * @param[in]   ddq           [2]   [rad/s^2]            joint accelerations; norm at most 1e+08
+ * @param[in]   parameters    [24]                       standard parameters; norm at most 1e+09
+ * @param[out]  input         [2]   [N m]                inputs: motor currents, efforts where undriven
+ * @param[out]  input_by_q    [4]   [N m per rad]        d input / d q; 2 x 2, row-major
+ * @param[out]  input_by_dq   [4]   [N m per (rad/s)]    d input / d dq; 2 x 2, row-major
+ * @param[out]  input_by_ddq  [4]   [N m per (rad/s^2)]  d input / d ddq; 2 x 2, row-major
  * @return GRAVITY_ARM_STATUS_OK or status bits
  *
- * Operations: 100 (61 mul, 39 add, 0 neg), 4 trig, 2 other.
+ * Operations: 100 (61 mul, 39 add, 0 neg), 4 trig, 2 other calls (sign, select and the like).
  */
-int gravity_arm_inverse_dynamics_derivatives_standard(
+gravity_arm_status_t gravity_arm_inverse_dynamics_derivatives_standard(
     const gravity_arm_real_t q[GRAVITY_ARM_N_JOINTS],
     const gravity_arm_real_t dq[GRAVITY_ARM_N_JOINTS],
     const gravity_arm_real_t ddq[GRAVITY_ARM_N_JOINTS],
@@ -640,14 +648,14 @@ int gravity_arm_inverse_dynamics_derivatives_standard(
  *                                                           norm at most 1e+09
  * @param[in]   parameters    [24]                           standard parameters; norm at most 1e+09
  * @param[out]  ddq           [2]   [rad/s^2]                joint accelerations
- * @param[out]  ddq_by_q      [4]   [(rad/s^2) per (rad)]    d ddq / d q; 2 x 2, row-major
+ * @param[out]  ddq_by_q      [4]   [(rad/s^2) per rad]      d ddq / d q; 2 x 2, row-major
  * @param[out]  ddq_by_dq     [4]   [(rad/s^2) per (rad/s)]  d ddq / d dq; 2 x 2, row-major
- * @param[out]  ddq_by_input  [4]   [(rad/s^2) per (N m)]    d ddq / d input; 2 x 2, row-major
+ * @param[out]  ddq_by_input  [4]   [(rad/s^2) per N m]      d ddq / d input; 2 x 2, row-major
  * @return GRAVITY_ARM_STATUS_OK or status bits
  *
- * Operations: 140 (86 mul, 54 add, 0 neg), 2 div, 4 trig, 2 other.
+ * Operations: 140 (86 mul, 54 add, 0 neg), 2 div, 4 trig, 2 other calls (sign, select and the like).
  */
-int gravity_arm_forward_dynamics_derivatives_standard(
+gravity_arm_status_t gravity_arm_forward_dynamics_derivatives_standard(
     const gravity_arm_real_t q[GRAVITY_ARM_N_JOINTS],
     const gravity_arm_real_t dq[GRAVITY_ARM_N_JOINTS],
     const gravity_arm_real_t input[GRAVITY_ARM_N_JOINTS],
@@ -656,6 +664,66 @@ int gravity_arm_forward_dynamics_derivatives_standard(
     gravity_arm_real_t ddq_by_q[GRAVITY_ARM_N_JOINTS * GRAVITY_ARM_N_JOINTS],
     gravity_arm_real_t ddq_by_dq[GRAVITY_ARM_N_JOINTS * GRAVITY_ARM_N_JOINTS],
     gravity_arm_real_t ddq_by_input[GRAVITY_ARM_N_JOINTS * GRAVITY_ARM_N_JOINTS]);
+
+/**
+ * External efforts at the joints by the generalised momentum, with a delay of 1 / gain; state: zero at
+ * first, then what the step before gave; base parameters.
+ *
+ * @param[in]   q           [2]   [rad]       joint coordinates; norm at most 10000
+ * @param[in]   dq          [2]   [rad/s]     joint velocities; norm at most 100000
+ * @param[in]   input       [2]   [N m]       inputs: motor currents, efforts where undriven; norm at most
+ *                                            1e+09
+ * @param[in]   dt          [1]   [s]         time step; norm at most 10000
+ * @param[in]   gain        [2]   [1/s]       gains of the observer, gain dt below 1; norm at most 100000
+ * @param[in]   parameters  [10]              base parameters; norm at most 1e+09
+ * @param[in]   state       [2]   [kg m^2/s]  state of the observer: the momentum that the model expects; norm
+ *                                            at most 1e+09
+ * @param[out]  state_next  [2]   [kg m^2/s]  state after the step
+ * @param[out]  external    [2]   [N m]       efforts that act on the arm from outside
+ * @return GRAVITY_ARM_STATUS_OK or status bits
+ *
+ * Operations: 63 (34 mul, 27 add, 2 neg), 4 trig, 2 other calls (sign, select and the like).
+ */
+gravity_arm_status_t gravity_arm_momentum_observer_step(
+    const gravity_arm_real_t q[GRAVITY_ARM_N_JOINTS],
+    const gravity_arm_real_t dq[GRAVITY_ARM_N_JOINTS],
+    const gravity_arm_real_t input[GRAVITY_ARM_N_JOINTS],
+    const gravity_arm_real_t dt[1],
+    const gravity_arm_real_t gain[GRAVITY_ARM_N_JOINTS],
+    const gravity_arm_real_t parameters[GRAVITY_ARM_N_PARAMETERS],
+    const gravity_arm_real_t state[GRAVITY_ARM_N_OBSERVER_STATES],
+    gravity_arm_real_t state_next[GRAVITY_ARM_N_OBSERVER_STATES],
+    gravity_arm_real_t external[GRAVITY_ARM_N_JOINTS]);
+
+/**
+ * External efforts at the joints by the generalised momentum, with a delay of 1 / gain; state: zero at
+ * first, then what the step before gave; standard parameters.
+ *
+ * @param[in]   q           [2]   [rad]       joint coordinates; norm at most 10000
+ * @param[in]   dq          [2]   [rad/s]     joint velocities; norm at most 100000
+ * @param[in]   input       [2]   [N m]       inputs: motor currents, efforts where undriven; norm at most
+ *                                            1e+09
+ * @param[in]   dt          [1]   [s]         time step; norm at most 10000
+ * @param[in]   gain        [2]   [1/s]       gains of the observer, gain dt below 1; norm at most 100000
+ * @param[in]   parameters  [24]              standard parameters; norm at most 1e+09
+ * @param[in]   state       [2]   [kg m^2/s]  state of the observer: the momentum that the model expects; norm
+ *                                            at most 1e+09
+ * @param[out]  state_next  [2]   [kg m^2/s]  state after the step
+ * @param[out]  external    [2]   [N m]       efforts that act on the arm from outside
+ * @return GRAVITY_ARM_STATUS_OK or status bits
+ *
+ * Operations: 74 (41 mul, 31 add, 2 neg), 4 trig, 2 other calls (sign, select and the like).
+ */
+gravity_arm_status_t gravity_arm_momentum_observer_step_standard(
+    const gravity_arm_real_t q[GRAVITY_ARM_N_JOINTS],
+    const gravity_arm_real_t dq[GRAVITY_ARM_N_JOINTS],
+    const gravity_arm_real_t input[GRAVITY_ARM_N_JOINTS],
+    const gravity_arm_real_t dt[1],
+    const gravity_arm_real_t gain[GRAVITY_ARM_N_JOINTS],
+    const gravity_arm_real_t parameters[GRAVITY_ARM_N_STANDARD_PARAMETERS],
+    const gravity_arm_real_t state[GRAVITY_ARM_N_OBSERVER_STATES],
+    gravity_arm_real_t state_next[GRAVITY_ARM_N_OBSERVER_STATES],
+    gravity_arm_real_t external[GRAVITY_ARM_N_JOINTS]);
 
 #ifdef __cplusplus
 }

@@ -6,7 +6,7 @@
  * Arm gravity_arm, description 61deec9d45de431e.
  * SPDX-License-Identifier: 0BSD
  *
- * Operations: 39 (24 mul, 15 add, 0 neg), 4 trig, 2 other.
+ * Operations: 39 (24 mul, 15 add, 0 neg), 4 trig, 2 other calls (sign, select and the like).
  *
  * @param[in]   q           [2]   [rad]    joint coordinates; norm at most 10000
  * @param[in]   dq          [2]   [rad/s]  joint velocities; norm at most 100000
@@ -47,11 +47,11 @@
  */
 #include "gravity_arm_private.h"
 
-#if GRAVITY_ARM_GENERATION != 0x88D1AC10UL
+#if GRAVITY_ARM_GENERATION != 0xB6EDED96UL
 #error "gravity_arm.h and gravity_arm_bias_standard.c are of different generations: generate the arm again"
 #endif
 
-int gravity_arm_bias_standard(
+gravity_arm_status_t gravity_arm_bias_standard(
     const gravity_arm_real_t q[GRAVITY_ARM_N_JOINTS],
     const gravity_arm_real_t dq[GRAVITY_ARM_N_JOINTS],
     const gravity_arm_real_t parameters[GRAVITY_ARM_N_STANDARD_PARAMETERS],
@@ -59,7 +59,7 @@ int gravity_arm_bias_standard(
 {
     enum { XX1 = 0, XY1, XZ1, YY1, YZ1, ZZ1, MX1, MY1, MZ1, M1, XX2, XY2, XZ2, YY2, YZ2, ZZ2, MX2, MY2, MZ2,
         M2, FV1, FC1, FV2, FC2 };
-    int status = GRAVITY_ARM_STATUS_OK;
+    gravity_arm_status_t status = GRAVITY_ARM_STATUS_OK;
 
     if (!gravity_arm_within_joints(q, GRAVITY_ARM_C(1.0e8))
         || !gravity_arm_within_joints(dq, GRAVITY_ARM_C(1.0e10))
@@ -75,21 +75,24 @@ int gravity_arm_bias_standard(
     GRAVITY_ARM_SINCOS(q[0], &t4, &t0);
     gravity_arm_real_t t6, t3;
     GRAVITY_ARM_SINCOS(q[1], &t6, &t3);
-    const gravity_arm_real_t t1 = GRAVITY_ARM_C(9.81) * t0;
-    const gravity_arm_real_t t2 = t1 + GRAVITY_ARM_C(0.538534) * (dq[0] * dq[0]);
-    const gravity_arm_real_t t5 = GRAVITY_ARM_C(9.81) * t4;
-    const gravity_arm_real_t t7 = t3 * t2 - t6 * t5;
+    const gravity_arm_real_t t1 = GRAVITY_ARM_C(9.81) * t0; /* link j1: motion */
+    const gravity_arm_real_t t2 = t1 + GRAVITY_ARM_C(0.538534) * (dq[0] * dq[0]); /* link j2: motion */
+    const gravity_arm_real_t t5 = GRAVITY_ARM_C(9.81) * t4; /* link j1: motion */
+    const gravity_arm_real_t t7 = t3 * t2 - t6 * t5; /* link j2: motion */
     const gravity_arm_real_t t8 = dq[0] + dq[1];
     const gravity_arm_real_t t9 = t8 * t8;
     const gravity_arm_real_t t10 = t6 * t2 + t3 * t5;
+    /* link j2: what it passes on */
     const gravity_arm_real_t t11 = t3 * (parameters[M2] * t10 - t9 * parameters[MY2])
         - t6 * (parameters[M2] * t7 + t9 * parameters[MX2]);
+    /* link j2: force and moment */
     const gravity_arm_real_t t12 = parameters[MX2] * t10 + parameters[MY2] * t7;
+    /* link j2: what it passes on */
     const gravity_arm_real_t t13 = t5 * parameters[MX1] + t1 * parameters[MY1] + (t12
         + GRAVITY_ARM_C(0.538534) * t11);
-    const gravity_arm_real_t t14 = gravity_arm_sign(dq[0]);
+    const gravity_arm_real_t t14 = gravity_arm_sign(dq[0]); /* joint j1: coulomb_friction */
     out[0] = dq[0] * parameters[FV1] + t14 * parameters[FC1] + t13;
-    const gravity_arm_real_t t15 = gravity_arm_sign(dq[1]);
+    const gravity_arm_real_t t15 = gravity_arm_sign(dq[1]); /* joint j2: coulomb_friction */
     out[1] = dq[1] * parameters[FV2] + t15 * parameters[FC2] + t12;
     return GRAVITY_ARM_STATUS_OK;
 }

@@ -8,16 +8,16 @@
  */
 #include "gravity_arm_private.h"
 
-#if GRAVITY_ARM_GENERATION != 0x88D1AC10UL
+#if GRAVITY_ARM_GENERATION != 0xB6EDED96UL
 #error "gravity_arm.h and gravity_arm_check_parameters.c are of different generations: generate the arm again"
 #endif
 
-int gravity_arm_check_parameters(const gravity_arm_real_t parameters[GRAVITY_ARM_N_PARAMETERS])
+gravity_arm_status_t gravity_arm_check_parameters(const gravity_arm_real_t parameters[GRAVITY_ARM_N_PARAMETERS])
 {
     return gravity_arm_within(parameters, 10, GRAVITY_ARM_C(1.0e18)) ? GRAVITY_ARM_STATUS_OK : GRAVITY_ARM_STATUS_INPUT;
 }
 
-int gravity_arm_check_parameters_standard(const gravity_arm_real_t parameters[GRAVITY_ARM_N_STANDARD_PARAMETERS])
+gravity_arm_status_t gravity_arm_check_parameters_standard(const gravity_arm_real_t parameters[GRAVITY_ARM_N_STANDARD_PARAMETERS])
 {
     return gravity_arm_within(parameters, 24, GRAVITY_ARM_C(1.0e18)) ? GRAVITY_ARM_STATUS_OK : GRAVITY_ARM_STATUS_INPUT;
 }

@@ -8,8 +8,8 @@
  *
  * Operations: 0 (0 mul, 0 add, 0 neg).
  *
- * @param[in]   q    [2]  [rad]              joint coordinates; norm at most 10000
- * @param[out]  out  [2]  [(N m) per (N m)]  drive gains K
+ * @param[in]   q    [2]  [rad]          joint coordinates; norm at most 10000
+ * @param[out]  out  [2]  [N m per N m]  drive gains K
  *
  * Coordinates:
  *
@@ -18,15 +18,15 @@
  */
 #include "gravity_arm_private.h"
 
-#if GRAVITY_ARM_GENERATION != 0x88D1AC10UL
+#if GRAVITY_ARM_GENERATION != 0xB6EDED96UL
 #error "gravity_arm.h and gravity_arm_drive_gain.c are of different generations: generate the arm again"
 #endif
 
-int gravity_arm_drive_gain(
+gravity_arm_status_t gravity_arm_drive_gain(
     const gravity_arm_real_t q[GRAVITY_ARM_N_JOINTS],
     gravity_arm_real_t out[GRAVITY_ARM_N_JOINTS])
 {
-    int status = GRAVITY_ARM_STATUS_OK;
+    gravity_arm_status_t status = GRAVITY_ARM_STATUS_OK;
 
     if (!gravity_arm_within_joints(q, GRAVITY_ARM_C(1.0e8))) {
         status |= GRAVITY_ARM_STATUS_INPUT;

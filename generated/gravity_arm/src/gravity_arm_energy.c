@@ -34,11 +34,11 @@
  */
 #include "gravity_arm_private.h"
 
-#if GRAVITY_ARM_GENERATION != 0x88D1AC10UL
+#if GRAVITY_ARM_GENERATION != 0xB6EDED96UL
 #error "gravity_arm.h and gravity_arm_energy.c are of different generations: generate the arm again"
 #endif
 
-int gravity_arm_energy(
+gravity_arm_status_t gravity_arm_energy(
     const gravity_arm_real_t q[GRAVITY_ARM_N_JOINTS],
     const gravity_arm_real_t dq[GRAVITY_ARM_N_JOINTS],
     const gravity_arm_real_t parameters[GRAVITY_ARM_N_PARAMETERS],
@@ -46,7 +46,7 @@ int gravity_arm_energy(
     gravity_arm_real_t potential[1])
 {
     enum { ZZ1R = 0, MX1R, MY1, ZZ2, MX2, MY2, FV1, FC1, FV2, FC2 };
-    int status = GRAVITY_ARM_STATUS_OK;
+    gravity_arm_status_t status = GRAVITY_ARM_STATUS_OK;
 
     if (!gravity_arm_within_joints(q, GRAVITY_ARM_C(1.0e8))
         || !gravity_arm_within_joints(dq, GRAVITY_ARM_C(1.0e10))
@@ -63,13 +63,13 @@ int gravity_arm_energy(
     GRAVITY_ARM_SINCOS(q[0], &t6, &t8);
     gravity_arm_real_t t3, t2;
     GRAVITY_ARM_SINCOS(q[1], &t3, &t2);
-    const gravity_arm_real_t t0 = dq[0] + dq[1];
-    const gravity_arm_real_t t1 = GRAVITY_ARM_C(0.538534) * dq[0];
+    const gravity_arm_real_t t0 = dq[0] + dq[1]; /* link j2: motion */
+    const gravity_arm_real_t t1 = GRAVITY_ARM_C(0.538534) * dq[0]; /* link j2: velocity of its origin */
     const gravity_arm_real_t t4 = parameters[MX2] * (t0 * (t2 * t1)) - parameters[MY2] * (t0 * (t3 * t1));
     const gravity_arm_real_t t5 = GRAVITY_ARM_C(0.5) * (dq[0] * (parameters[ZZ1R] * dq[0]))
         + GRAVITY_ARM_C(0.5) * (t0 * (parameters[ZZ2] * t0));
     kinetic[0] = t5 + t4;
-    const gravity_arm_real_t t7 = GRAVITY_ARM_C(9.81) * t6;
+    const gravity_arm_real_t t7 = GRAVITY_ARM_C(9.81) * t6; /* link j1: motion */
     const gravity_arm_real_t t9 = GRAVITY_ARM_C(-9.81) * t8;
     const gravity_arm_real_t t10 = parameters[MX2] * (t3 * t7 + t2 * t9) + parameters[MY2] * (t2 * t7
         - t3 * t9);

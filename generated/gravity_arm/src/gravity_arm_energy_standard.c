@@ -48,11 +48,11 @@
  */
 #include "gravity_arm_private.h"
 
-#if GRAVITY_ARM_GENERATION != 0x88D1AC10UL
+#if GRAVITY_ARM_GENERATION != 0xB6EDED96UL
 #error "gravity_arm.h and gravity_arm_energy_standard.c are of different generations: generate the arm again"
 #endif
 
-int gravity_arm_energy_standard(
+gravity_arm_status_t gravity_arm_energy_standard(
     const gravity_arm_real_t q[GRAVITY_ARM_N_JOINTS],
     const gravity_arm_real_t dq[GRAVITY_ARM_N_JOINTS],
     const gravity_arm_real_t parameters[GRAVITY_ARM_N_STANDARD_PARAMETERS],
@@ -61,7 +61,7 @@ int gravity_arm_energy_standard(
 {
     enum { XX1 = 0, XY1, XZ1, YY1, YZ1, ZZ1, MX1, MY1, MZ1, M1, XX2, XY2, XZ2, YY2, YZ2, ZZ2, MX2, MY2, MZ2,
         M2, FV1, FC1, FV2, FC2 };
-    int status = GRAVITY_ARM_STATUS_OK;
+    gravity_arm_status_t status = GRAVITY_ARM_STATUS_OK;
 
     if (!gravity_arm_within_joints(q, GRAVITY_ARM_C(1.0e8))
         || !gravity_arm_within_joints(dq, GRAVITY_ARM_C(1.0e10))
@@ -78,15 +78,15 @@ int gravity_arm_energy_standard(
     GRAVITY_ARM_SINCOS(q[0], &t10, &t8);
     gravity_arm_real_t t1, t3;
     GRAVITY_ARM_SINCOS(q[1], &t1, &t3);
-    const gravity_arm_real_t t0 = GRAVITY_ARM_C(0.538534) * dq[0];
+    const gravity_arm_real_t t0 = GRAVITY_ARM_C(0.538534) * dq[0]; /* link j2: velocity of its origin */
     const gravity_arm_real_t t2 = t1 * t0;
     const gravity_arm_real_t t4 = t3 * t0;
-    const gravity_arm_real_t t5 = dq[0] + dq[1];
+    const gravity_arm_real_t t5 = dq[0] + dq[1]; /* link j2: motion */
     const gravity_arm_real_t t6 = t5 * (t5 * parameters[ZZ2]) + parameters[M2] * (t2 * t2 + t4 * t4);
     const gravity_arm_real_t t7 = GRAVITY_ARM_C(0.5) * (dq[0] * (dq[0] * parameters[ZZ1]))
         + GRAVITY_ARM_C(0.5) * t6 + (parameters[MX2] * (t5 * t4) - parameters[MY2] * (t5 * t2));
     kinetic[0] = t7;
-    const gravity_arm_real_t t9 = GRAVITY_ARM_C(-9.81) * t8;
+    const gravity_arm_real_t t9 = GRAVITY_ARM_C(-9.81) * t8; /* link j1: motion */
     const gravity_arm_real_t t11 = GRAVITY_ARM_C(9.81) * t10;
     const gravity_arm_real_t t12 = (t3 * t9 + t1 * t11) * parameters[MX2] + (t3 * t11
         - t1 * t9) * parameters[MY2];

@@ -7,7 +7,7 @@
  * Arm gravity_arm, description 61deec9d45de431e.
  * SPDX-License-Identifier: 0BSD
  *
- * Operations: 132 (82 mul, 50 add, 0 neg), 2 div, 4 trig, 2 other.
+ * Operations: 132 (82 mul, 50 add, 0 neg), 2 div, 4 trig, 2 other calls (sign, select and the like).
  *
  * @param[in]   q             [2]   [rad]                    joint coordinates; norm at most 10000
  * @param[in]   dq            [2]   [rad/s]                  joint velocities; norm at most 100000
@@ -15,9 +15,9 @@
  *                                                           norm at most 1e+09
  * @param[in]   parameters    [10]                           base parameters; norm at most 1e+09
  * @param[out]  ddq           [2]   [rad/s^2]                joint accelerations
- * @param[out]  ddq_by_q      [4]   [(rad/s^2) per (rad)]    d ddq / d q; 2 x 2, row-major
+ * @param[out]  ddq_by_q      [4]   [(rad/s^2) per rad]      d ddq / d q; 2 x 2, row-major
  * @param[out]  ddq_by_dq     [4]   [(rad/s^2) per (rad/s)]  d ddq / d dq; 2 x 2, row-major
- * @param[out]  ddq_by_input  [4]   [(rad/s^2) per (N m)]    d ddq / d input; 2 x 2, row-major
+ * @param[out]  ddq_by_input  [4]   [(rad/s^2) per N m]      d ddq / d input; 2 x 2, row-major
  *
  * Coordinates:
  *
@@ -39,11 +39,11 @@
  */
 #include "gravity_arm_private.h"
 
-#if GRAVITY_ARM_GENERATION != 0x88D1AC10UL
+#if GRAVITY_ARM_GENERATION != 0xB6EDED96UL
 #error "gravity_arm.h and gravity_arm_forward_dynamics_derivatives.c are of different generations: generate the arm again"
 #endif
 
-int gravity_arm_forward_dynamics_derivatives(
+gravity_arm_status_t gravity_arm_forward_dynamics_derivatives(
     const gravity_arm_real_t q[GRAVITY_ARM_N_JOINTS],
     const gravity_arm_real_t dq[GRAVITY_ARM_N_JOINTS],
     const gravity_arm_real_t input[GRAVITY_ARM_N_JOINTS],
@@ -54,7 +54,7 @@ int gravity_arm_forward_dynamics_derivatives(
     gravity_arm_real_t ddq_by_input[GRAVITY_ARM_N_JOINTS * GRAVITY_ARM_N_JOINTS])
 {
     enum { ZZ1R = 0, MX1R, MY1, ZZ2, MX2, MY2, FV1, FC1, FV2, FC2 };
-    int status = GRAVITY_ARM_STATUS_OK;
+    gravity_arm_status_t status = GRAVITY_ARM_STATUS_OK;
 
     if (!gravity_arm_within_joints(q, GRAVITY_ARM_C(1.0e8))
         || !gravity_arm_within_joints(dq, GRAVITY_ARM_C(1.0e10))
@@ -81,10 +81,12 @@ int gravity_arm_forward_dynamics_derivatives(
         gravity_arm_zero(ddq_by_input, 4);
         return GRAVITY_ARM_STATUS_PIVOT;
     }
+    /* link j2: column of the mass matrix */
     const gravity_arm_real_t t2 = t0 * parameters[MY2] - t1 * parameters[MX2];
     const gravity_arm_real_t t3 = GRAVITY_ARM_C(0.538534) * t2 - parameters[ZZ2];
     const gravity_arm_real_t t4 = GRAVITY_ARM_C(1.0) / parameters[ZZ2];
     const gravity_arm_real_t t5 = t3 * t4;
+    /* link j2: inertia of it and all beyond */
     const gravity_arm_real_t t6 = parameters[ZZ1R] + (parameters[ZZ2] + GRAVITY_ARM_C(-1.077068) * t2);
     const gravity_arm_real_t t7 = gravity_arm_bounded(t6 - t3 * t5);
     if (!(t7 > GRAVITY_ARM_C(1.0e-12))) {
@@ -102,20 +104,22 @@ int gravity_arm_forward_dynamics_derivatives(
         gravity_arm_zero(ddq_by_input, 4);
         return GRAVITY_ARM_STATUS_PIVOT;
     }
-    const gravity_arm_real_t t10 = GRAVITY_ARM_C(-9.81) * t9;
-    const gravity_arm_real_t t11 = t10 + GRAVITY_ARM_C(-0.538534) * (dq[0] * dq[0]);
+    const gravity_arm_real_t t10 = GRAVITY_ARM_C(-9.81) * t9; /* link j1: motion */
+    const gravity_arm_real_t t11 = t10 + GRAVITY_ARM_C(-0.538534) * (dq[0] * dq[0]); /* link j2: motion */
     const gravity_arm_real_t t12 = t0 * t11;
-    const gravity_arm_real_t t14 = GRAVITY_ARM_C(-9.81) * t13;
-    const gravity_arm_real_t t15 = t1 * t11;
+    const gravity_arm_real_t t14 = GRAVITY_ARM_C(-9.81) * t13; /* link j1: motion */
+    const gravity_arm_real_t t15 = t1 * t11; /* link j2: motion */
+    /* link j2: force and moment */
     const gravity_arm_real_t t16 = parameters[MX2] * (t12 + t1 * t14) + parameters[MY2] * (t15 - t0 * t14);
-    const gravity_arm_real_t t17 = dq[0] + dq[1];
+    const gravity_arm_real_t t17 = dq[0] + dq[1]; /* link j2: motion */
     const gravity_arm_real_t t18 = t17 * t17;
-    const gravity_arm_real_t t19 = parameters[MX2] * t18;
+    const gravity_arm_real_t t19 = parameters[MX2] * t18; /* link j2: force and moment */
     const gravity_arm_real_t t20 = parameters[MY2] * t18;
+    /* link j2: what it passes on */
     const gravity_arm_real_t t21 = parameters[MX1R] * t14 + parameters[MY1] * t10 + (t16
         + GRAVITY_ARM_C(0.538534) * (t0 * t19 + t1 * t20));
-    const gravity_arm_real_t t22 = gravity_arm_sign(dq[0]);
-    const gravity_arm_real_t t23 = gravity_arm_sign(dq[1]);
+    const gravity_arm_real_t t22 = gravity_arm_sign(dq[0]); /* joint j1: coulomb_friction */
+    const gravity_arm_real_t t23 = gravity_arm_sign(dq[1]); /* joint j2: coulomb_friction */
     const gravity_arm_real_t t24 = input[1] - (parameters[FV2] * dq[1] + parameters[FC2] * t23 - t16);
     const gravity_arm_real_t t25 = input[0] + (t21 - (parameters[FV1] * dq[0] + parameters[FC1] * t22))
         + t24 * t5;
@@ -124,19 +128,22 @@ int gravity_arm_forward_dynamics_derivatives(
     ddq[0] = t27;
     const gravity_arm_real_t t28 = gravity_arm_bounded(t24 * t4 + t5 * t27);
     ddq[1] = t28;
+    /* link j2: column of the mass matrix */
     const gravity_arm_real_t t29 = t1 * parameters[MY2] + t0 * parameters[MX2];
+    /* link j1: derivatives */
     const gravity_arm_real_t t30 = (parameters[MX1R] - t2) * t10 - (parameters[MY1] + t29) * t14;
-    const gravity_arm_real_t t31 = t29 * t14 + t2 * t10;
+    const gravity_arm_real_t t31 = t29 * t14 + t2 * t10; /* link j2: derivatives */
     const gravity_arm_real_t t32 = gravity_arm_bounded(t5 * t26);
     ddq_by_q[0] = t26 * t30 - t31 * t32;
     const gravity_arm_real_t t33 = t4 + t5 * t32;
     ddq_by_q[2] = t30 * t32 - t31 * t33;
     const gravity_arm_real_t t34 = parameters[MY2] * t17;
     const gravity_arm_real_t t35 = parameters[MX2] * t17;
+    /* link j2: inertia, momentum beyond */
     const gravity_arm_real_t t36 = GRAVITY_ARM_C(0.538534) * (t1 * t34 + t0 * t35)
         - t29 * (GRAVITY_ARM_C(0.538534) * dq[0]);
     const gravity_arm_real_t t37 = GRAVITY_ARM_C(2.0) * t36 - parameters[FV1];
-    const gravity_arm_real_t t38 = t29 * (GRAVITY_ARM_C(1.077068) * dq[0]);
+    const gravity_arm_real_t t38 = t29 * (GRAVITY_ARM_C(1.077068) * dq[0]); /* link j2: derivatives */
     ddq_by_dq[0] = t26 * t37 - t38 * t32;
     ddq_by_dq[2] = t37 * t32 - t38 * t33;
     ddq_by_input[0] = t26;

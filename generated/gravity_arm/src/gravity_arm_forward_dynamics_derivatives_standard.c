@@ -7,7 +7,7 @@
  * Arm gravity_arm, description 61deec9d45de431e.
  * SPDX-License-Identifier: 0BSD
  *
- * Operations: 140 (86 mul, 54 add, 0 neg), 2 div, 4 trig, 2 other.
+ * Operations: 140 (86 mul, 54 add, 0 neg), 2 div, 4 trig, 2 other calls (sign, select and the like).
  *
  * @param[in]   q             [2]   [rad]                    joint coordinates; norm at most 10000
  * @param[in]   dq            [2]   [rad/s]                  joint velocities; norm at most 100000
@@ -15,9 +15,9 @@
  *                                                           norm at most 1e+09
  * @param[in]   parameters    [24]                           standard parameters; norm at most 1e+09
  * @param[out]  ddq           [2]   [rad/s^2]                joint accelerations
- * @param[out]  ddq_by_q      [4]   [(rad/s^2) per (rad)]    d ddq / d q; 2 x 2, row-major
+ * @param[out]  ddq_by_q      [4]   [(rad/s^2) per rad]      d ddq / d q; 2 x 2, row-major
  * @param[out]  ddq_by_dq     [4]   [(rad/s^2) per (rad/s)]  d ddq / d dq; 2 x 2, row-major
- * @param[out]  ddq_by_input  [4]   [(rad/s^2) per (N m)]    d ddq / d input; 2 x 2, row-major
+ * @param[out]  ddq_by_input  [4]   [(rad/s^2) per N m]      d ddq / d input; 2 x 2, row-major
  *
  * Coordinates:
  *
@@ -53,11 +53,11 @@
  */
 #include "gravity_arm_private.h"
 
-#if GRAVITY_ARM_GENERATION != 0x88D1AC10UL
+#if GRAVITY_ARM_GENERATION != 0xB6EDED96UL
 #error "gravity_arm.h and gravity_arm_forward_dynamics_derivatives_standard.c are of different generations: generate the arm again"
 #endif
 
-int gravity_arm_forward_dynamics_derivatives_standard(
+gravity_arm_status_t gravity_arm_forward_dynamics_derivatives_standard(
     const gravity_arm_real_t q[GRAVITY_ARM_N_JOINTS],
     const gravity_arm_real_t dq[GRAVITY_ARM_N_JOINTS],
     const gravity_arm_real_t input[GRAVITY_ARM_N_JOINTS],
@@ -69,7 +69,7 @@ int gravity_arm_forward_dynamics_derivatives_standard(
 {
     enum { XX1 = 0, XY1, XZ1, YY1, YZ1, ZZ1, MX1, MY1, MZ1, M1, XX2, XY2, XZ2, YY2, YZ2, ZZ2, MX2, MY2, MZ2,
         M2, FV1, FC1, FV2, FC2 };
-    int status = GRAVITY_ARM_STATUS_OK;
+    gravity_arm_status_t status = GRAVITY_ARM_STATUS_OK;
 
     if (!gravity_arm_within_joints(q, GRAVITY_ARM_C(1.0e8))
         || !gravity_arm_within_joints(dq, GRAVITY_ARM_C(1.0e10))
@@ -96,10 +96,12 @@ int gravity_arm_forward_dynamics_derivatives_standard(
         gravity_arm_zero(ddq_by_input, 4);
         return GRAVITY_ARM_STATUS_PIVOT;
     }
+    /* link j2: column of the mass matrix */
     const gravity_arm_real_t t2 = t0 * parameters[MY2] - t1 * parameters[MX2];
     const gravity_arm_real_t t3 = GRAVITY_ARM_C(0.538534) * t2 - parameters[ZZ2];
     const gravity_arm_real_t t4 = GRAVITY_ARM_C(1.0) / parameters[ZZ2];
     const gravity_arm_real_t t5 = t3 * t4;
+    /* link j2: inertia of it and all beyond */
     const gravity_arm_real_t t6 = GRAVITY_ARM_C(0.538534) * parameters[M2];
     const gravity_arm_real_t t7 = parameters[ZZ1] + (parameters[ZZ2] + GRAVITY_ARM_C(0.538534) * (t6
         + GRAVITY_ARM_C(-2.0) * t2));
@@ -119,23 +121,26 @@ int gravity_arm_forward_dynamics_derivatives_standard(
         gravity_arm_zero(ddq_by_input, 4);
         return GRAVITY_ARM_STATUS_PIVOT;
     }
-    const gravity_arm_real_t t11 = GRAVITY_ARM_C(-9.81) * t10;
-    const gravity_arm_real_t t12 = t11 + GRAVITY_ARM_C(-0.538534) * (dq[0] * dq[0]);
+    const gravity_arm_real_t t11 = GRAVITY_ARM_C(-9.81) * t10; /* link j1: motion */
+    const gravity_arm_real_t t12 = t11 + GRAVITY_ARM_C(-0.538534) * (dq[0] * dq[0]); /* link j2: motion */
     const gravity_arm_real_t t13 = t1 * t12;
-    const gravity_arm_real_t t15 = GRAVITY_ARM_C(-9.81) * t14;
-    const gravity_arm_real_t t16 = t0 * t15 - t13;
+    const gravity_arm_real_t t15 = GRAVITY_ARM_C(-9.81) * t14; /* link j1: motion */
+    const gravity_arm_real_t t16 = t0 * t15 - t13; /* link j2: motion */
     const gravity_arm_real_t t17 = dq[0] + dq[1];
     const gravity_arm_real_t t18 = t17 * t17;
-    const gravity_arm_real_t t19 = t18 * parameters[MX2];
-    const gravity_arm_real_t t20 = t0 * t12;
+    const gravity_arm_real_t t19 = t18 * parameters[MX2]; /* link j2: force and moment */
+    const gravity_arm_real_t t20 = t0 * t12; /* link j2: motion */
     const gravity_arm_real_t t21 = t20 + t1 * t15;
-    const gravity_arm_real_t t22 = t18 * parameters[MY2];
+    const gravity_arm_real_t t22 = t18 * parameters[MY2]; /* link j2: force and moment */
+    /* link j2: what it passes on */
     const gravity_arm_real_t t23 = t0 * (parameters[M2] * t16 + t19) + t1 * (parameters[M2] * t21 + t22);
+    /* link j2: force and moment */
     const gravity_arm_real_t t24 = parameters[MX2] * t21 - parameters[MY2] * t16;
+    /* link j2: what it passes on */
     const gravity_arm_real_t t25 = t15 * parameters[MX1] + t11 * parameters[MY1] + (t24
         + GRAVITY_ARM_C(0.538534) * t23);
-    const gravity_arm_real_t t26 = gravity_arm_sign(dq[0]);
-    const gravity_arm_real_t t27 = gravity_arm_sign(dq[1]);
+    const gravity_arm_real_t t26 = gravity_arm_sign(dq[0]); /* joint j1: coulomb_friction */
+    const gravity_arm_real_t t27 = gravity_arm_sign(dq[1]); /* joint j2: coulomb_friction */
     const gravity_arm_real_t t28 = input[1] - (dq[1] * parameters[FV2] + t27 * parameters[FC2] - t24);
     const gravity_arm_real_t t29 = input[0] + (t25 - (dq[0] * parameters[FV1] + t26 * parameters[FC1]))
         + t28 * t5;
@@ -144,19 +149,22 @@ int gravity_arm_forward_dynamics_derivatives_standard(
     ddq[0] = t31;
     const gravity_arm_real_t t32 = gravity_arm_bounded(t28 * t4 + t5 * t31);
     ddq[1] = t32;
+    /* link j2: column of the mass matrix */
     const gravity_arm_real_t t33 = t1 * parameters[MY2] + t0 * parameters[MX2];
+    /* link j1: derivatives */
     const gravity_arm_real_t t34 = t11 * (parameters[MX1] - (t2 - t6)) - t15 * (parameters[MY1] + t33);
-    const gravity_arm_real_t t35 = t15 * t33 + t11 * t2;
+    const gravity_arm_real_t t35 = t15 * t33 + t11 * t2; /* link j2: derivatives */
     const gravity_arm_real_t t36 = gravity_arm_bounded(t5 * t30);
     ddq_by_q[0] = t30 * t34 - t35 * t36;
     const gravity_arm_real_t t37 = t4 + t5 * t36;
     ddq_by_q[2] = t34 * t36 - t35 * t37;
     const gravity_arm_real_t t38 = t17 * parameters[MY2];
     const gravity_arm_real_t t39 = t17 * parameters[MX2];
+    /* link j2: inertia, momentum beyond */
     const gravity_arm_real_t t40 = GRAVITY_ARM_C(0.538534) * (t1 * t38 + t0 * t39)
         - t33 * (GRAVITY_ARM_C(0.538534) * dq[0]);
     const gravity_arm_real_t t41 = GRAVITY_ARM_C(2.0) * t40 - parameters[FV1];
-    const gravity_arm_real_t t42 = t33 * (GRAVITY_ARM_C(1.077068) * dq[0]);
+    const gravity_arm_real_t t42 = t33 * (GRAVITY_ARM_C(1.077068) * dq[0]); /* link j2: derivatives */
     ddq_by_dq[0] = t30 * t41 - t42 * t36;
     ddq_by_dq[2] = t41 * t36 - t42 * t37;
     ddq_by_input[0] = t30;

@@ -6,7 +6,7 @@
  * Arm gravity_arm, description 61deec9d45de431e.
  * SPDX-License-Identifier: 0BSD
  *
- * Operations: 63 (37 mul, 26 add, 0 neg), 2 div, 4 trig, 2 other.
+ * Operations: 63 (37 mul, 26 add, 0 neg), 2 div, 4 trig, 2 other calls (sign, select and the like).
  *
  * @param[in]   q           [2]   [rad]      joint coordinates; norm at most 10000
  * @param[in]   dq          [2]   [rad/s]    joint velocities; norm at most 100000
@@ -49,11 +49,11 @@
  */
 #include "gravity_arm_private.h"
 
-#if GRAVITY_ARM_GENERATION != 0x88D1AC10UL
+#if GRAVITY_ARM_GENERATION != 0xB6EDED96UL
 #error "gravity_arm.h and gravity_arm_forward_dynamics_standard.c are of different generations: generate the arm again"
 #endif
 
-int gravity_arm_forward_dynamics_standard(
+gravity_arm_status_t gravity_arm_forward_dynamics_standard(
     const gravity_arm_real_t q[GRAVITY_ARM_N_JOINTS],
     const gravity_arm_real_t dq[GRAVITY_ARM_N_JOINTS],
     const gravity_arm_real_t input[GRAVITY_ARM_N_JOINTS],
@@ -62,7 +62,7 @@ int gravity_arm_forward_dynamics_standard(
 {
     enum { XX1 = 0, XY1, XZ1, YY1, YZ1, ZZ1, MX1, MY1, MZ1, M1, XX2, XY2, XZ2, YY2, YZ2, ZZ2, MX2, MY2, MZ2,
         M2, FV1, FC1, FV2, FC2 };
-    int status = GRAVITY_ARM_STATUS_OK;
+    gravity_arm_status_t status = GRAVITY_ARM_STATUS_OK;
 
     if (!gravity_arm_within_joints(q, GRAVITY_ARM_C(1.0e8))
         || !gravity_arm_within_joints(dq, GRAVITY_ARM_C(1.0e10))
@@ -83,10 +83,12 @@ int gravity_arm_forward_dynamics_standard(
         gravity_arm_zero(out, 2);
         return GRAVITY_ARM_STATUS_PIVOT;
     }
+    /* link j2: column of the mass matrix */
     const gravity_arm_real_t t2 = t0 * parameters[MY2] - t1 * parameters[MX2];
     const gravity_arm_real_t t3 = GRAVITY_ARM_C(0.538534) * t2 - parameters[ZZ2];
     const gravity_arm_real_t t4 = GRAVITY_ARM_C(1.0) / parameters[ZZ2];
     const gravity_arm_real_t t5 = t3 * t4;
+    /* link j2: inertia of it and all beyond */
     const gravity_arm_real_t t6 = parameters[ZZ1] + (parameters[ZZ2]
         + GRAVITY_ARM_C(0.538534) * (GRAVITY_ARM_C(0.538534) * parameters[M2] + GRAVITY_ARM_C(-2.0) * t2));
     const gravity_arm_real_t t7 = gravity_arm_bounded(t6 - t3 * t5);
@@ -99,20 +101,23 @@ int gravity_arm_forward_dynamics_standard(
         gravity_arm_zero(out, 2);
         return GRAVITY_ARM_STATUS_PIVOT;
     }
-    const gravity_arm_real_t t10 = GRAVITY_ARM_C(-9.81) * t9;
-    const gravity_arm_real_t t11 = t10 + GRAVITY_ARM_C(-0.538534) * (dq[0] * dq[0]);
-    const gravity_arm_real_t t13 = GRAVITY_ARM_C(-9.81) * t12;
-    const gravity_arm_real_t t14 = t0 * t13 - t1 * t11;
+    const gravity_arm_real_t t10 = GRAVITY_ARM_C(-9.81) * t9; /* link j1: motion */
+    const gravity_arm_real_t t11 = t10 + GRAVITY_ARM_C(-0.538534) * (dq[0] * dq[0]); /* link j2: motion */
+    const gravity_arm_real_t t13 = GRAVITY_ARM_C(-9.81) * t12; /* link j1: motion */
+    const gravity_arm_real_t t14 = t0 * t13 - t1 * t11; /* link j2: motion */
     const gravity_arm_real_t t15 = dq[0] + dq[1];
     const gravity_arm_real_t t16 = t15 * t15;
     const gravity_arm_real_t t17 = t0 * t11 + t1 * t13;
+    /* link j2: what it passes on */
     const gravity_arm_real_t t18 = t0 * (parameters[M2] * t14 + t16 * parameters[MX2])
         + t1 * (parameters[M2] * t17 + t16 * parameters[MY2]);
+    /* link j2: force and moment */
     const gravity_arm_real_t t19 = parameters[MX2] * t17 - parameters[MY2] * t14;
+    /* link j2: what it passes on */
     const gravity_arm_real_t t20 = t13 * parameters[MX1] + t10 * parameters[MY1] + (t19
         + GRAVITY_ARM_C(0.538534) * t18);
-    const gravity_arm_real_t t21 = gravity_arm_sign(dq[0]);
-    const gravity_arm_real_t t22 = gravity_arm_sign(dq[1]);
+    const gravity_arm_real_t t21 = gravity_arm_sign(dq[0]); /* joint j1: coulomb_friction */
+    const gravity_arm_real_t t22 = gravity_arm_sign(dq[1]); /* joint j2: coulomb_friction */
     const gravity_arm_real_t t23 = input[1] - (dq[1] * parameters[FV2] + t22 * parameters[FC2] - t19);
     const gravity_arm_real_t t24 = input[0] + (t20 - (dq[0] * parameters[FV1] + t21 * parameters[FC1]))
         + t23 * t5;

@@ -20,15 +20,15 @@
  */
 #include "gravity_arm_private.h"
 
-#if GRAVITY_ARM_GENERATION != 0x88D1AC10UL
+#if GRAVITY_ARM_GENERATION != 0xB6EDED96UL
 #error "gravity_arm.h and gravity_arm_forward_kinematics.c are of different generations: generate the arm again"
 #endif
 
-int gravity_arm_forward_kinematics(
+gravity_arm_status_t gravity_arm_forward_kinematics(
     const gravity_arm_real_t q[GRAVITY_ARM_N_JOINTS],
     gravity_arm_real_t out[16 * GRAVITY_ARM_N_LINKS])
 {
-    int status = GRAVITY_ARM_STATUS_OK;
+    gravity_arm_status_t status = GRAVITY_ARM_STATUS_OK;
 
     if (!gravity_arm_within_joints(q, GRAVITY_ARM_C(1.0e8))) {
         status |= GRAVITY_ARM_STATUS_INPUT;
@@ -48,7 +48,7 @@ int gravity_arm_forward_kinematics(
     out[5] = t0;
     out[10] = GRAVITY_ARM_C(1.0);
     out[15] = GRAVITY_ARM_C(1.0);
-    const gravity_arm_real_t t4 = t0 * t2 - t1 * t3;
+    const gravity_arm_real_t t4 = t0 * t2 - t1 * t3; /* link j2: pose */
     out[16] = t4;
     const gravity_arm_real_t t5 = t0 * t3 + t1 * t2;
     out[17] = -t5;

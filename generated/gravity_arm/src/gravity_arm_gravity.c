@@ -32,17 +32,17 @@
  */
 #include "gravity_arm_private.h"
 
-#if GRAVITY_ARM_GENERATION != 0x88D1AC10UL
+#if GRAVITY_ARM_GENERATION != 0xB6EDED96UL
 #error "gravity_arm.h and gravity_arm_gravity.c are of different generations: generate the arm again"
 #endif
 
-int gravity_arm_gravity(
+gravity_arm_status_t gravity_arm_gravity(
     const gravity_arm_real_t q[GRAVITY_ARM_N_JOINTS],
     const gravity_arm_real_t parameters[GRAVITY_ARM_N_PARAMETERS],
     gravity_arm_real_t out[GRAVITY_ARM_N_JOINTS])
 {
     enum { ZZ1R = 0, MX1R, MY1, ZZ2, MX2, MY2, FV1, FC1, FV2, FC2 };
-    int status = GRAVITY_ARM_STATUS_OK;
+    gravity_arm_status_t status = GRAVITY_ARM_STATUS_OK;
 
     if (!gravity_arm_within_joints(q, GRAVITY_ARM_C(1.0e8))
         || !GRAVITY_ARM_PARAMETERS_USABLE(gravity_arm_within(parameters, 10, GRAVITY_ARM_C(1.0e18)))) {
@@ -57,8 +57,9 @@ int gravity_arm_gravity(
     GRAVITY_ARM_SINCOS(q[0], &t0, &t3);
     gravity_arm_real_t t5, t2;
     GRAVITY_ARM_SINCOS(q[1], &t5, &t2);
-    const gravity_arm_real_t t1 = GRAVITY_ARM_C(9.81) * t0;
+    const gravity_arm_real_t t1 = GRAVITY_ARM_C(9.81) * t0; /* link j1: motion */
     const gravity_arm_real_t t4 = GRAVITY_ARM_C(9.81) * t3;
+    /* link j2: force and moment */
     const gravity_arm_real_t t6 = parameters[MX2] * (t2 * t1 + t5 * t4) + parameters[MY2] * (t2 * t4
         - t5 * t1);
     out[0] = parameters[MX1R] * t1 + parameters[MY1] * t4 + t6;

@@ -46,18 +46,18 @@
  */
 #include "gravity_arm_private.h"
 
-#if GRAVITY_ARM_GENERATION != 0x88D1AC10UL
+#if GRAVITY_ARM_GENERATION != 0xB6EDED96UL
 #error "gravity_arm.h and gravity_arm_gravity_standard.c are of different generations: generate the arm again"
 #endif
 
-int gravity_arm_gravity_standard(
+gravity_arm_status_t gravity_arm_gravity_standard(
     const gravity_arm_real_t q[GRAVITY_ARM_N_JOINTS],
     const gravity_arm_real_t parameters[GRAVITY_ARM_N_STANDARD_PARAMETERS],
     gravity_arm_real_t out[GRAVITY_ARM_N_JOINTS])
 {
     enum { XX1 = 0, XY1, XZ1, YY1, YZ1, ZZ1, MX1, MY1, MZ1, M1, XX2, XY2, XZ2, YY2, YZ2, ZZ2, MX2, MY2, MZ2,
         M2, FV1, FC1, FV2, FC2 };
-    int status = GRAVITY_ARM_STATUS_OK;
+    gravity_arm_status_t status = GRAVITY_ARM_STATUS_OK;
 
     if (!gravity_arm_within_joints(q, GRAVITY_ARM_C(1.0e8))
         || !GRAVITY_ARM_PARAMETERS_USABLE(gravity_arm_within(parameters, 24, GRAVITY_ARM_C(1.0e18)))) {
@@ -72,11 +72,12 @@ int gravity_arm_gravity_standard(
     GRAVITY_ARM_SINCOS(q[0], &t3, &t0);
     gravity_arm_real_t t2, t5;
     GRAVITY_ARM_SINCOS(q[1], &t2, &t5);
-    const gravity_arm_real_t t1 = GRAVITY_ARM_C(9.81) * t0;
+    const gravity_arm_real_t t1 = GRAVITY_ARM_C(9.81) * t0; /* link j1: motion */
     const gravity_arm_real_t t4 = GRAVITY_ARM_C(9.81) * t3;
-    const gravity_arm_real_t t6 = t2 * t1 + t5 * t4;
+    const gravity_arm_real_t t6 = t2 * t1 + t5 * t4; /* link j2: motion */
     const gravity_arm_real_t t7 = t5 * t1 - t2 * t4;
-    const gravity_arm_real_t t8 = t6 * parameters[MX2] + t7 * parameters[MY2];
+    const gravity_arm_real_t t8 = t6 * parameters[MX2] + t7 * parameters[MY2]; /* link j2: force and moment */
+    /* link j2: what it passes on */
     const gravity_arm_real_t t9 = GRAVITY_ARM_C(0.538534) * (t5 * (t6 * parameters[M2])
         - t2 * (t7 * parameters[M2]));
     out[0] = t4 * parameters[MX1] + t1 * parameters[MY1] + (t8 + t9);

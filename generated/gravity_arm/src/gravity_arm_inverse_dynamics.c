@@ -6,7 +6,7 @@
  * Arm gravity_arm, description 61deec9d45de431e.
  * SPDX-License-Identifier: 0BSD
  *
- * Operations: 46 (27 mul, 19 add, 0 neg), 4 trig, 2 other.
+ * Operations: 46 (27 mul, 19 add, 0 neg), 4 trig, 2 other calls (sign, select and the like).
  *
  * @param[in]   q           [2]   [rad]      joint coordinates; norm at most 10000
  * @param[in]   dq          [2]   [rad/s]    joint velocities; norm at most 100000
@@ -34,11 +34,11 @@
  */
 #include "gravity_arm_private.h"
 
-#if GRAVITY_ARM_GENERATION != 0x88D1AC10UL
+#if GRAVITY_ARM_GENERATION != 0xB6EDED96UL
 #error "gravity_arm.h and gravity_arm_inverse_dynamics.c are of different generations: generate the arm again"
 #endif
 
-int gravity_arm_inverse_dynamics(
+gravity_arm_status_t gravity_arm_inverse_dynamics(
     const gravity_arm_real_t q[GRAVITY_ARM_N_JOINTS],
     const gravity_arm_real_t dq[GRAVITY_ARM_N_JOINTS],
     const gravity_arm_real_t ddq[GRAVITY_ARM_N_JOINTS],
@@ -46,7 +46,7 @@ int gravity_arm_inverse_dynamics(
     gravity_arm_real_t out[GRAVITY_ARM_N_JOINTS])
 {
     enum { ZZ1R = 0, MX1R, MY1, ZZ2, MX2, MY2, FV1, FC1, FV2, FC2 };
-    int status = GRAVITY_ARM_STATUS_OK;
+    gravity_arm_status_t status = GRAVITY_ARM_STATUS_OK;
 
     if (!gravity_arm_within_joints(q, GRAVITY_ARM_C(1.0e8))
         || !gravity_arm_within_joints(dq, GRAVITY_ARM_C(1.0e10))
@@ -63,23 +63,25 @@ int gravity_arm_inverse_dynamics(
     GRAVITY_ARM_SINCOS(q[0], &t4, &t0);
     gravity_arm_real_t t3, t7;
     GRAVITY_ARM_SINCOS(q[1], &t3, &t7);
-    const gravity_arm_real_t t1 = GRAVITY_ARM_C(9.81) * t0;
-    const gravity_arm_real_t t2 = t1 + GRAVITY_ARM_C(0.538534) * (dq[0] * dq[0]);
-    const gravity_arm_real_t t5 = GRAVITY_ARM_C(9.81) * t4;
-    const gravity_arm_real_t t6 = t5 + GRAVITY_ARM_C(0.538534) * ddq[0];
+    const gravity_arm_real_t t1 = GRAVITY_ARM_C(9.81) * t0; /* link j1: motion */
+    const gravity_arm_real_t t2 = t1 + GRAVITY_ARM_C(0.538534) * (dq[0] * dq[0]); /* link j2: motion */
+    const gravity_arm_real_t t5 = GRAVITY_ARM_C(9.81) * t4; /* link j1: motion */
+    const gravity_arm_real_t t6 = t5 + GRAVITY_ARM_C(0.538534) * ddq[0]; /* link j2: motion */
+    /* link j2: force and moment */
     const gravity_arm_real_t t8 = parameters[MX2] * (t3 * t2 + t7 * t6) + parameters[MY2] * (t7 * t2
         - t3 * t6);
-    const gravity_arm_real_t t9 = ddq[0] + ddq[1];
-    const gravity_arm_real_t t10 = parameters[ZZ2] * t9 + t8;
-    const gravity_arm_real_t t11 = dq[0] + dq[1];
+    const gravity_arm_real_t t9 = ddq[0] + ddq[1]; /* link j2: motion */
+    const gravity_arm_real_t t10 = parameters[ZZ2] * t9 + t8; /* link j2: force and moment */
+    const gravity_arm_real_t t11 = dq[0] + dq[1]; /* link j2: motion */
     const gravity_arm_real_t t12 = t11 * t11;
+    /* link j2: what it passes on */
     const gravity_arm_real_t t13 = t7 * (parameters[MX2] * t9 - parameters[MY2] * t12)
         - t3 * (parameters[MX2] * t12 + parameters[MY2] * t9);
     const gravity_arm_real_t t14 = parameters[MX1R] * t5 + parameters[MY1] * t1 + parameters[ZZ1R] * ddq[0]
         + (t10 + GRAVITY_ARM_C(0.538534) * t13);
-    const gravity_arm_real_t t15 = gravity_arm_sign(dq[0]);
+    const gravity_arm_real_t t15 = gravity_arm_sign(dq[0]); /* joint j1: coulomb_friction */
     out[0] = parameters[FV1] * dq[0] + parameters[FC1] * t15 + t14;
-    const gravity_arm_real_t t16 = gravity_arm_sign(dq[1]);
+    const gravity_arm_real_t t16 = gravity_arm_sign(dq[1]); /* joint j2: coulomb_friction */
     out[1] = parameters[FV2] * dq[1] + parameters[FC2] * t16 + t10;
     return GRAVITY_ARM_STATUS_OK;
 }

@@ -7,16 +7,16 @@
  * Arm gravity_arm, description 61deec9d45de431e.
  * SPDX-License-Identifier: 0BSD
  *
- * Operations: 100 (61 mul, 39 add, 0 neg), 4 trig, 2 other.
+ * Operations: 100 (61 mul, 39 add, 0 neg), 4 trig, 2 other calls (sign, select and the like).
  *
- * @param[in]   q             [2]   [rad]                  joint coordinates; norm at most 10000
- * @param[in]   dq            [2]   [rad/s]                joint velocities; norm at most 100000
- * @param[in]   ddq           [2]   [rad/s^2]              joint accelerations; norm at most 1e+08
- * @param[in]   parameters    [24]                         standard parameters; norm at most 1e+09
- * @param[out]  input         [2]   [N m]                  inputs: motor currents, efforts where undriven
- * @param[out]  input_by_q    [4]   [(N m) per (rad)]      d input / d q; 2 x 2, row-major
- * @param[out]  input_by_dq   [4]   [(N m) per (rad/s)]    d input / d dq; 2 x 2, row-major
- * @param[out]  input_by_ddq  [4]   [(N m) per (rad/s^2)]  d input / d ddq; 2 x 2, row-major
+ * @param[in]   q             [2]   [rad]                joint coordinates; norm at most 10000
+ * @param[in]   dq            [2]   [rad/s]              joint velocities; norm at most 100000
+ * @param[in]   ddq           [2]   [rad/s^2]            joint accelerations; norm at most 1e+08
+ * @param[in]   parameters    [24]                       standard parameters; norm at most 1e+09
+ * @param[out]  input         [2]   [N m]                inputs: motor currents, efforts where undriven
+ * @param[out]  input_by_q    [4]   [N m per rad]        d input / d q; 2 x 2, row-major
+ * @param[out]  input_by_dq   [4]   [N m per (rad/s)]    d input / d dq; 2 x 2, row-major
+ * @param[out]  input_by_ddq  [4]   [N m per (rad/s^2)]  d input / d ddq; 2 x 2, row-major
  *
  * Coordinates:
  *
@@ -52,11 +52,11 @@
  */
 #include "gravity_arm_private.h"
 
-#if GRAVITY_ARM_GENERATION != 0x88D1AC10UL
+#if GRAVITY_ARM_GENERATION != 0xB6EDED96UL
 #error "gravity_arm.h and gravity_arm_inverse_dynamics_derivatives_standard.c are of different generations: generate the arm again"
 #endif
 
-int gravity_arm_inverse_dynamics_derivatives_standard(
+gravity_arm_status_t gravity_arm_inverse_dynamics_derivatives_standard(
     const gravity_arm_real_t q[GRAVITY_ARM_N_JOINTS],
     const gravity_arm_real_t dq[GRAVITY_ARM_N_JOINTS],
     const gravity_arm_real_t ddq[GRAVITY_ARM_N_JOINTS],
@@ -68,7 +68,7 @@ int gravity_arm_inverse_dynamics_derivatives_standard(
 {
     enum { XX1 = 0, XY1, XZ1, YY1, YZ1, ZZ1, MX1, MY1, MZ1, M1, XX2, XY2, XZ2, YY2, YZ2, ZZ2, MX2, MY2, MZ2,
         M2, FV1, FC1, FV2, FC2 };
-    int status = GRAVITY_ARM_STATUS_OK;
+    gravity_arm_status_t status = GRAVITY_ARM_STATUS_OK;
 
     if (!gravity_arm_within_joints(q, GRAVITY_ARM_C(1.0e8))
         || !gravity_arm_within_joints(dq, GRAVITY_ARM_C(1.0e10))
@@ -88,44 +88,54 @@ int gravity_arm_inverse_dynamics_derivatives_standard(
     GRAVITY_ARM_SINCOS(q[0], &t4, &t0);
     gravity_arm_real_t t3, t7;
     GRAVITY_ARM_SINCOS(q[1], &t3, &t7);
-    const gravity_arm_real_t t1 = GRAVITY_ARM_C(9.81) * t0;
-    const gravity_arm_real_t t2 = t1 + GRAVITY_ARM_C(0.538534) * (dq[0] * dq[0]);
-    const gravity_arm_real_t t5 = GRAVITY_ARM_C(-9.81) * t4;
-    const gravity_arm_real_t t6 = GRAVITY_ARM_C(0.538534) * ddq[0] - t5;
+    const gravity_arm_real_t t1 = GRAVITY_ARM_C(9.81) * t0; /* link j1: motion */
+    const gravity_arm_real_t t2 = t1 + GRAVITY_ARM_C(0.538534) * (dq[0] * dq[0]); /* link j2: motion */
+    const gravity_arm_real_t t5 = GRAVITY_ARM_C(-9.81) * t4; /* link j1: motion */
+    const gravity_arm_real_t t6 = GRAVITY_ARM_C(0.538534) * ddq[0] - t5; /* link j2: motion */
     const gravity_arm_real_t t8 = t3 * t2 + t7 * t6;
     const gravity_arm_real_t t9 = t7 * t2 - t3 * t6;
     const gravity_arm_real_t t10 = ddq[0] + ddq[1];
+    /* link j2: force and moment */
     const gravity_arm_real_t t11 = t10 * parameters[ZZ2] + (t8 * parameters[MX2] + t9 * parameters[MY2]);
-    const gravity_arm_real_t t12 = dq[0] + dq[1];
+    const gravity_arm_real_t t12 = dq[0] + dq[1]; /* link j2: motion */
     const gravity_arm_real_t t13 = t12 * t12;
+    /* link j2: force and moment */
     const gravity_arm_real_t t14 = t13 * parameters[MX2] + t10 * parameters[MY2];
     const gravity_arm_real_t t15 = t10 * parameters[MX2] - t13 * parameters[MY2];
+    /* link j2: what it passes on */
     const gravity_arm_real_t t16 = t7 * (t8 * parameters[M2] + t15) - t3 * (t9 * parameters[M2] + t14);
     const gravity_arm_real_t t17 = t1 * parameters[MY1] - t5 * parameters[MX1] + ddq[0] * parameters[ZZ1]
         + (t11 + GRAVITY_ARM_C(0.538534) * t16);
-    const gravity_arm_real_t t18 = gravity_arm_sign(dq[0]);
+    const gravity_arm_real_t t18 = gravity_arm_sign(dq[0]); /* joint j1: coulomb_friction */
     input[0] = dq[0] * parameters[FV1] + t18 * parameters[FC1] + t17;
-    const gravity_arm_real_t t19 = gravity_arm_sign(dq[1]);
+    const gravity_arm_real_t t19 = gravity_arm_sign(dq[1]); /* joint j2: coulomb_friction */
     input[1] = dq[1] * parameters[FV2] + t19 * parameters[FC2] + t11;
+    /* link j2: column of the mass matrix */
     const gravity_arm_real_t t20 = t7 * parameters[MX2] - t3 * parameters[MY2];
+    /* link j2: inertia of it and all beyond */
     const gravity_arm_real_t t21 = GRAVITY_ARM_C(0.538534) * parameters[M2];
+    /* link j2: column of the mass matrix */
     const gravity_arm_real_t t22 = t7 * parameters[MY2] + t3 * parameters[MX2];
+    /* link j1: derivatives */
     const gravity_arm_real_t t23 = t1 * (parameters[MX1] + (t20 + t21)) + t5 * (parameters[MY1] + t22);
     input_by_q[0] = t23;
     input_by_q[2] = t5 * t22 + t1 * t20;
     const gravity_arm_real_t t24 = t12 * parameters[MY2];
     const gravity_arm_real_t t25 = t12 * parameters[MX2];
+    /* link j2: inertia, momentum beyond */
     const gravity_arm_real_t t26 = GRAVITY_ARM_C(-0.538534) * (t7 * t24 + t3 * t25)
         + t22 * (GRAVITY_ARM_C(0.538534) * dq[0]);
     input_by_dq[0] = parameters[FV1] + GRAVITY_ARM_C(2.0) * t26;
     input_by_dq[2] = t22 * (GRAVITY_ARM_C(1.077068) * dq[0]);
     input_by_ddq[0] = parameters[ZZ1] + (parameters[ZZ2] + GRAVITY_ARM_C(0.538534) * (t21
         + GRAVITY_ARM_C(2.0) * t20));
+    /* link j2: column of the mass matrix */
     const gravity_arm_real_t t27 = parameters[ZZ2] + GRAVITY_ARM_C(0.538534) * t20;
     input_by_ddq[2] = t27;
     const gravity_arm_real_t t28 = t9 * parameters[MX2] - t8 * parameters[MY2];
     input_by_q[1] = t28 + GRAVITY_ARM_C(-0.538534) * (t3 * t15 + t7 * t14);
     input_by_q[3] = t28;
+    /* link j2: derivatives */
     const gravity_arm_real_t t29 = GRAVITY_ARM_C(0.538534) * (t3 * (GRAVITY_ARM_C(-2.0) * t25)
         + t7 * (GRAVITY_ARM_C(-2.0) * t24));
     input_by_dq[1] = t29;

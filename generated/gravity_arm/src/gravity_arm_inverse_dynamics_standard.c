@@ -6,7 +6,7 @@
  * Arm gravity_arm, description 61deec9d45de431e.
  * SPDX-License-Identifier: 0BSD
  *
- * Operations: 50 (29 mul, 21 add, 0 neg), 4 trig, 2 other.
+ * Operations: 50 (29 mul, 21 add, 0 neg), 4 trig, 2 other calls (sign, select and the like).
  *
  * @param[in]   q           [2]   [rad]      joint coordinates; norm at most 10000
  * @param[in]   dq          [2]   [rad/s]    joint velocities; norm at most 100000
@@ -48,11 +48,11 @@
  */
 #include "gravity_arm_private.h"
 
-#if GRAVITY_ARM_GENERATION != 0x88D1AC10UL
+#if GRAVITY_ARM_GENERATION != 0xB6EDED96UL
 #error "gravity_arm.h and gravity_arm_inverse_dynamics_standard.c are of different generations: generate the arm again"
 #endif
 
-int gravity_arm_inverse_dynamics_standard(
+gravity_arm_status_t gravity_arm_inverse_dynamics_standard(
     const gravity_arm_real_t q[GRAVITY_ARM_N_JOINTS],
     const gravity_arm_real_t dq[GRAVITY_ARM_N_JOINTS],
     const gravity_arm_real_t ddq[GRAVITY_ARM_N_JOINTS],
@@ -61,7 +61,7 @@ int gravity_arm_inverse_dynamics_standard(
 {
     enum { XX1 = 0, XY1, XZ1, YY1, YZ1, ZZ1, MX1, MY1, MZ1, M1, XX2, XY2, XZ2, YY2, YZ2, ZZ2, MX2, MY2, MZ2,
         M2, FV1, FC1, FV2, FC2 };
-    int status = GRAVITY_ARM_STATUS_OK;
+    gravity_arm_status_t status = GRAVITY_ARM_STATUS_OK;
 
     if (!gravity_arm_within_joints(q, GRAVITY_ARM_C(1.0e8))
         || !gravity_arm_within_joints(dq, GRAVITY_ARM_C(1.0e10))
@@ -78,25 +78,27 @@ int gravity_arm_inverse_dynamics_standard(
     GRAVITY_ARM_SINCOS(q[0], &t4, &t0);
     gravity_arm_real_t t3, t7;
     GRAVITY_ARM_SINCOS(q[1], &t3, &t7);
-    const gravity_arm_real_t t1 = GRAVITY_ARM_C(9.81) * t0;
-    const gravity_arm_real_t t2 = t1 + GRAVITY_ARM_C(0.538534) * (dq[0] * dq[0]);
-    const gravity_arm_real_t t5 = GRAVITY_ARM_C(9.81) * t4;
-    const gravity_arm_real_t t6 = t5 + GRAVITY_ARM_C(0.538534) * ddq[0];
+    const gravity_arm_real_t t1 = GRAVITY_ARM_C(9.81) * t0; /* link j1: motion */
+    const gravity_arm_real_t t2 = t1 + GRAVITY_ARM_C(0.538534) * (dq[0] * dq[0]); /* link j2: motion */
+    const gravity_arm_real_t t5 = GRAVITY_ARM_C(9.81) * t4; /* link j1: motion */
+    const gravity_arm_real_t t6 = t5 + GRAVITY_ARM_C(0.538534) * ddq[0]; /* link j2: motion */
     const gravity_arm_real_t t8 = t3 * t2 + t7 * t6;
     const gravity_arm_real_t t9 = t7 * t2 - t3 * t6;
     const gravity_arm_real_t t10 = ddq[0] + ddq[1];
+    /* link j2: force and moment */
     const gravity_arm_real_t t11 = t10 * parameters[ZZ2] + (t8 * parameters[MX2] + t9 * parameters[MY2]);
-    const gravity_arm_real_t t12 = dq[0] + dq[1];
+    const gravity_arm_real_t t12 = dq[0] + dq[1]; /* link j2: motion */
     const gravity_arm_real_t t13 = t12 * t12;
+    /* link j2: what it passes on */
     const gravity_arm_real_t t14 = t3 * (t9 * parameters[M2] + (t13 * parameters[MX2]
         + t10 * parameters[MY2]));
     const gravity_arm_real_t t15 = t7 * (t8 * parameters[M2] + (t10 * parameters[MX2]
         - t13 * parameters[MY2]));
     const gravity_arm_real_t t16 = t5 * parameters[MX1] + t1 * parameters[MY1] + ddq[0] * parameters[ZZ1]
         + (t11 + GRAVITY_ARM_C(0.538534) * (t15 - t14));
-    const gravity_arm_real_t t17 = gravity_arm_sign(dq[0]);
+    const gravity_arm_real_t t17 = gravity_arm_sign(dq[0]); /* joint j1: coulomb_friction */
     out[0] = dq[0] * parameters[FV1] + t17 * parameters[FC1] + t16;
-    const gravity_arm_real_t t18 = gravity_arm_sign(dq[1]);
+    const gravity_arm_real_t t18 = gravity_arm_sign(dq[1]); /* joint j2: coulomb_friction */
     out[1] = dq[1] * parameters[FV2] + t18 * parameters[FC2] + t11;
     return GRAVITY_ARM_STATUS_OK;
 }

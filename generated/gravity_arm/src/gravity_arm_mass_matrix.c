@@ -32,17 +32,17 @@
  */
 #include "gravity_arm_private.h"
 
-#if GRAVITY_ARM_GENERATION != 0x88D1AC10UL
+#if GRAVITY_ARM_GENERATION != 0xB6EDED96UL
 #error "gravity_arm.h and gravity_arm_mass_matrix.c are of different generations: generate the arm again"
 #endif
 
-int gravity_arm_mass_matrix(
+gravity_arm_status_t gravity_arm_mass_matrix(
     const gravity_arm_real_t q[GRAVITY_ARM_N_JOINTS],
     const gravity_arm_real_t parameters[GRAVITY_ARM_N_PARAMETERS],
     gravity_arm_real_t out[GRAVITY_ARM_N_JOINTS * GRAVITY_ARM_N_JOINTS])
 {
     enum { ZZ1R = 0, MX1R, MY1, ZZ2, MX2, MY2, FV1, FC1, FV2, FC2 };
-    int status = GRAVITY_ARM_STATUS_OK;
+    gravity_arm_status_t status = GRAVITY_ARM_STATUS_OK;
 
     if (!gravity_arm_within_joints(q, GRAVITY_ARM_C(1.0e8))
         || !GRAVITY_ARM_PARAMETERS_USABLE(gravity_arm_within(parameters, 10, GRAVITY_ARM_C(1.0e18)))) {
@@ -55,6 +55,7 @@ int gravity_arm_mass_matrix(
 
     gravity_arm_real_t t0, t1;
     GRAVITY_ARM_SINCOS(q[1], &t0, &t1);
+    /* link j2: column of the mass matrix */
     const gravity_arm_real_t t2 = t1 * parameters[MX2] - t0 * parameters[MY2];
     out[0] = parameters[ZZ1R] + (parameters[ZZ2] + GRAVITY_ARM_C(1.077068) * t2);
     const gravity_arm_real_t t3 = parameters[ZZ2] + GRAVITY_ARM_C(0.538534) * t2;

@@ -46,18 +46,18 @@
  */
 #include "gravity_arm_private.h"
 
-#if GRAVITY_ARM_GENERATION != 0x88D1AC10UL
+#if GRAVITY_ARM_GENERATION != 0xB6EDED96UL
 #error "gravity_arm.h and gravity_arm_mass_matrix_standard.c are of different generations: generate the arm again"
 #endif
 
-int gravity_arm_mass_matrix_standard(
+gravity_arm_status_t gravity_arm_mass_matrix_standard(
     const gravity_arm_real_t q[GRAVITY_ARM_N_JOINTS],
     const gravity_arm_real_t parameters[GRAVITY_ARM_N_STANDARD_PARAMETERS],
     gravity_arm_real_t out[GRAVITY_ARM_N_JOINTS * GRAVITY_ARM_N_JOINTS])
 {
     enum { XX1 = 0, XY1, XZ1, YY1, YZ1, ZZ1, MX1, MY1, MZ1, M1, XX2, XY2, XZ2, YY2, YZ2, ZZ2, MX2, MY2, MZ2,
         M2, FV1, FC1, FV2, FC2 };
-    int status = GRAVITY_ARM_STATUS_OK;
+    gravity_arm_status_t status = GRAVITY_ARM_STATUS_OK;
 
     if (!gravity_arm_within_joints(q, GRAVITY_ARM_C(1.0e8))
         || !GRAVITY_ARM_PARAMETERS_USABLE(gravity_arm_within(parameters, 24, GRAVITY_ARM_C(1.0e18)))) {
@@ -70,10 +70,13 @@ int gravity_arm_mass_matrix_standard(
 
     gravity_arm_real_t t0, t1;
     GRAVITY_ARM_SINCOS(q[1], &t0, &t1);
+    /* link j2: column of the mass matrix */
     const gravity_arm_real_t t2 = t1 * parameters[MX2] - t0 * parameters[MY2];
+    /* link j2: inertia of it and all beyond */
     const gravity_arm_real_t t3 = parameters[ZZ1] + (parameters[ZZ2]
         + GRAVITY_ARM_C(0.538534) * (GRAVITY_ARM_C(0.538534) * parameters[M2] + GRAVITY_ARM_C(2.0) * t2));
     out[0] = t3;
+    /* link j2: column of the mass matrix */
     const gravity_arm_real_t t4 = parameters[ZZ2] + GRAVITY_ARM_C(0.538534) * t2;
     out[1] = t4;
     out[2] = t4;

@@ -22,11 +22,11 @@
  */
 #include "gravity_arm_private.h"
 
-#if GRAVITY_ARM_GENERATION != 0x88D1AC10UL
+#if GRAVITY_ARM_GENERATION != 0xB6EDED96UL
 #error "gravity_arm.h and gravity_arm_motor_from_joint.c are of different generations: generate the arm again"
 #endif
 
-int gravity_arm_motor_from_joint(
+gravity_arm_status_t gravity_arm_motor_from_joint(
     const gravity_arm_real_t q[GRAVITY_ARM_N_JOINTS],
     const gravity_arm_real_t dq[GRAVITY_ARM_N_JOINTS],
     const gravity_arm_real_t ddq[GRAVITY_ARM_N_JOINTS],
@@ -34,7 +34,7 @@ int gravity_arm_motor_from_joint(
     gravity_arm_real_t dq_m[GRAVITY_ARM_N_JOINTS],
     gravity_arm_real_t ddq_m[GRAVITY_ARM_N_JOINTS])
 {
-    int status = GRAVITY_ARM_STATUS_OK;
+    gravity_arm_status_t status = GRAVITY_ARM_STATUS_OK;
 
     if (!gravity_arm_within_joints(q, GRAVITY_ARM_C(1.0e8))
         || !gravity_arm_within_joints(dq, GRAVITY_ARM_C(1.0e10))

@@ -6,7 +6,7 @@
  * Arm gravity_arm, description 61deec9d45de431e.
  * SPDX-License-Identifier: 0BSD
  *
- * Operations: 29 (18 mul, 11 add, 0 neg), 4 trig, 2 other.
+ * Operations: 29 (18 mul, 11 add, 0 neg), 4 trig, 2 other calls (sign, select and the like).
  *
  * @param[in]   q    [2]   [rad]                            joint coordinates; norm at most 10000
  * @param[in]   dq   [2]   [rad/s]                          joint velocities; norm at most 100000
@@ -26,17 +26,17 @@
  */
 #include "gravity_arm_private.h"
 
-#if GRAVITY_ARM_GENERATION != 0x88D1AC10UL
+#if GRAVITY_ARM_GENERATION != 0xB6EDED96UL
 #error "gravity_arm.h and gravity_arm_regressor_standard.c are of different generations: generate the arm again"
 #endif
 
-int gravity_arm_regressor_standard(
+gravity_arm_status_t gravity_arm_regressor_standard(
     const gravity_arm_real_t q[GRAVITY_ARM_N_JOINTS],
     const gravity_arm_real_t dq[GRAVITY_ARM_N_JOINTS],
     const gravity_arm_real_t ddq[GRAVITY_ARM_N_JOINTS],
     gravity_arm_real_t out[GRAVITY_ARM_N_JOINTS * GRAVITY_ARM_N_STANDARD_PARAMETERS])
 {
-    int status = GRAVITY_ARM_STATUS_OK;
+    gravity_arm_status_t status = GRAVITY_ARM_STATUS_OK;
 
     if (!gravity_arm_within_joints(q, GRAVITY_ARM_C(1.0e8))
         || !gravity_arm_within_joints(dq, GRAVITY_ARM_C(1.0e10))
@@ -53,11 +53,11 @@ int gravity_arm_regressor_standard(
     gravity_arm_real_t t6, t8;
     GRAVITY_ARM_SINCOS(q[1], &t6, &t8);
     out[5] = ddq[0];
-    const gravity_arm_real_t t1 = GRAVITY_ARM_C(9.81) * t0;
+    const gravity_arm_real_t t1 = GRAVITY_ARM_C(9.81) * t0; /* link j1: motion */
     out[6] = t1;
     const gravity_arm_real_t t3 = GRAVITY_ARM_C(9.81) * t2;
     out[7] = t3;
-    const gravity_arm_real_t t4 = ddq[0] + ddq[1];
+    const gravity_arm_real_t t4 = ddq[0] + ddq[1]; /* link j2: motion */
     out[15] = t4;
     out[39] = t4;
     const gravity_arm_real_t t5 = t3 + GRAVITY_ARM_C(0.538534) * (dq[0] * dq[0]);
@@ -65,19 +65,20 @@ int gravity_arm_regressor_standard(
     const gravity_arm_real_t t9 = t6 * t5 + t8 * t7;
     const gravity_arm_real_t t10 = dq[0] + dq[1];
     const gravity_arm_real_t t11 = t10 * t10;
+    /* link j2: velocities by those of the joints */
     const gravity_arm_real_t t12 = GRAVITY_ARM_C(-0.538534) * t6;
     const gravity_arm_real_t t13 = GRAVITY_ARM_C(0.538534) * t8;
     out[16] = t9 + (t11 * t12 + t4 * t13);
     out[40] = t9;
-    const gravity_arm_real_t t14 = t8 * t5 - t6 * t7;
+    const gravity_arm_real_t t14 = t8 * t5 - t6 * t7; /* link j2: motion */
     out[17] = t14 + (t4 * t12 - t11 * t13);
     out[41] = t14;
     out[19] = t14 * t12 + t9 * t13;
     out[20] = dq[0];
-    const gravity_arm_real_t t15 = gravity_arm_sign(dq[0]);
+    const gravity_arm_real_t t15 = gravity_arm_sign(dq[0]); /* joint j1: coulomb_friction */
     out[21] = t15;
     out[46] = dq[1];
-    const gravity_arm_real_t t16 = gravity_arm_sign(dq[1]);
+    const gravity_arm_real_t t16 = gravity_arm_sign(dq[1]); /* joint j2: coulomb_friction */
     out[47] = t16;
     /* always zero */
     out[0] = out[1] = out[2] = out[3] = out[4] = out[8] = out[9] = out[10] = out[11] = out[12] = out[13] =

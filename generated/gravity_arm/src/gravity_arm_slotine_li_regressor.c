@@ -6,7 +6,7 @@
  * Arm gravity_arm, description 61deec9d45de431e.
  * SPDX-License-Identifier: 0BSD
  *
- * Operations: 27 (16 mul, 11 add, 0 neg), 4 trig, 2 other.
+ * Operations: 27 (16 mul, 11 add, 0 neg), 4 trig, 2 other calls (sign, select and the like).
  *
  * @param[in]   q      [2]   [rad]                            joint coordinates; norm at most 10000
  * @param[in]   dq     [2]   [rad/s]                          joint velocities; norm at most 100000
@@ -27,18 +27,18 @@
  */
 #include "gravity_arm_private.h"
 
-#if GRAVITY_ARM_GENERATION != 0x88D1AC10UL
+#if GRAVITY_ARM_GENERATION != 0xB6EDED96UL
 #error "gravity_arm.h and gravity_arm_slotine_li_regressor.c are of different generations: generate the arm again"
 #endif
 
-int gravity_arm_slotine_li_regressor(
+gravity_arm_status_t gravity_arm_slotine_li_regressor(
     const gravity_arm_real_t q[GRAVITY_ARM_N_JOINTS],
     const gravity_arm_real_t dq[GRAVITY_ARM_N_JOINTS],
     const gravity_arm_real_t dq_r[GRAVITY_ARM_N_JOINTS],
     const gravity_arm_real_t ddq_r[GRAVITY_ARM_N_JOINTS],
     gravity_arm_real_t out[GRAVITY_ARM_N_JOINTS * GRAVITY_ARM_N_PARAMETERS])
 {
-    int status = GRAVITY_ARM_STATUS_OK;
+    gravity_arm_status_t status = GRAVITY_ARM_STATUS_OK;
 
     if (!gravity_arm_within_joints(q, GRAVITY_ARM_C(1.0e8))
         || !gravity_arm_within_joints(dq, GRAVITY_ARM_C(1.0e10))
@@ -56,29 +56,30 @@ int gravity_arm_slotine_li_regressor(
     gravity_arm_real_t t6, t8;
     GRAVITY_ARM_SINCOS(q[1], &t6, &t8);
     out[0] = ddq_r[0];
-    const gravity_arm_real_t t1 = GRAVITY_ARM_C(9.81) * t0;
+    const gravity_arm_real_t t1 = GRAVITY_ARM_C(9.81) * t0; /* link j1: motion */
     out[1] = t1;
     const gravity_arm_real_t t3 = GRAVITY_ARM_C(9.81) * t2;
     out[2] = t3;
-    const gravity_arm_real_t t4 = ddq_r[0] + ddq_r[1];
+    const gravity_arm_real_t t4 = ddq_r[0] + ddq_r[1]; /* link j2: motion */
     out[3] = t4;
     out[13] = t4;
     const gravity_arm_real_t t5 = t3 + GRAVITY_ARM_C(0.538534) * (dq[0] * dq_r[0]);
     const gravity_arm_real_t t7 = t1 + GRAVITY_ARM_C(0.538534) * ddq_r[0];
     const gravity_arm_real_t t9 = t6 * t5 + t8 * t7;
     const gravity_arm_real_t t10 = (dq[0] + dq[1]) * (dq_r[0] + dq_r[1]);
+    /* link j2: velocities by those of the joints */
     const gravity_arm_real_t t11 = GRAVITY_ARM_C(-0.538534) * t6;
     const gravity_arm_real_t t12 = GRAVITY_ARM_C(0.538534) * t8;
     out[4] = t9 + (t11 * t10 + t12 * t4);
     out[14] = t9;
-    const gravity_arm_real_t t13 = t8 * t5 - t6 * t7;
+    const gravity_arm_real_t t13 = t8 * t5 - t6 * t7; /* link j2: motion */
     out[5] = t13 + (t11 * t4 - t12 * t10);
     out[15] = t13;
     out[6] = dq[0];
-    const gravity_arm_real_t t14 = gravity_arm_sign(dq[0]);
+    const gravity_arm_real_t t14 = gravity_arm_sign(dq[0]); /* joint j1: coulomb_friction */
     out[7] = t14;
     out[18] = dq[1];
-    const gravity_arm_real_t t15 = gravity_arm_sign(dq[1]);
+    const gravity_arm_real_t t15 = gravity_arm_sign(dq[1]); /* joint j2: coulomb_friction */
     out[19] = t15;
     /* always zero */
     out[8] = out[9] = GRAVITY_ARM_C(0.0);

@@ -11,7 +11,8 @@
  *
  * Every function returns GRAVITY_LINK1_STATUS_OK, or the sum of the GRAVITY_LINK1_STATUS_ bits that apply; all of
  * its outputs are then zero. Inputs are checked by their Euclidean norm, so one that is not finite is
- * found too (not with -ffast-math). Outputs may not overlap inputs. Matrices are row-major.
+ * found too (not with -ffast-math). Outputs may not overlap inputs. Matrices are row-major. In the sources a
+ * remark behind a value says which link or joint it belongs to, and those after it up to the next remark.
  *
  * Coordinates:
  *
@@ -29,7 +30,7 @@
 #define GRAVITY_LINK1_H
 
 /** Number of this generation: header and sources of different ones do not compile together. */
-#define GRAVITY_LINK1_GENERATION 0xEF47084EUL
+#define GRAVITY_LINK1_GENERATION 0x0A001FB0UL
 
 /** SHA-256 of the description that this is the model of, then after a blank the description's version, if any. */
 #define GRAVITY_LINK1_MODEL "e56ff0e07e464bfef58a0f9831f2c8207c525071b6209ad434ed6783885b3a0a"
@@ -81,6 +82,8 @@
 #define gravity_link1_forward_dynamics_derivatives gravity_link1_forward_dynamics_derivatives_float
 #define gravity_link1_inverse_dynamics_derivatives_standard gravity_link1_inverse_dynamics_derivatives_standard_float
 #define gravity_link1_forward_dynamics_derivatives_standard gravity_link1_forward_dynamics_derivatives_standard_float
+#define gravity_link1_momentum_observer_step gravity_link1_momentum_observer_step_float
+#define gravity_link1_momentum_observer_step_standard gravity_link1_momentum_observer_step_standard_float
 #define gravity_link1_check_parameters gravity_link1_check_parameters_float
 #define gravity_link1_check_parameters_standard gravity_link1_check_parameters_standard_float
 #define gravity_link1_model gravity_link1_model_float
@@ -101,11 +104,16 @@ typedef GRAVITY_LINK1_REAL gravity_link1_real_t;
 #define GRAVITY_LINK1_N_PARAMETERS           5   /**< base parameters */
 #define GRAVITY_LINK1_N_STANDARD_PARAMETERS  12  /**< standard parameters */
 #define GRAVITY_LINK1_N_PACKED               5   /**< structural non-zeros of the regressor */
+#define GRAVITY_LINK1_N_OBSERVER_STATES      1   /**< state of the observer: the momentum that the model
+                                                 expects */
 
-#define GRAVITY_LINK1_STATUS_OK     0
-#define GRAVITY_LINK1_STATUS_STROKE 1 /**< a lever would leave its stroke */
-#define GRAVITY_LINK1_STATUS_PIVOT  2 /**< a pivot of the mass matrix vanishes, or the result is beyond 1e15 */
-#define GRAVITY_LINK1_STATUS_INPUT  4 /**< an input is not finite or beyond its bound */
+/** GRAVITY_LINK1_STATUS_OK or bits of the others. */
+typedef unsigned int gravity_link1_status_t;
+
+#define GRAVITY_LINK1_STATUS_OK     0U
+#define GRAVITY_LINK1_STATUS_STROKE 1U /**< a lever would leave its stroke */
+#define GRAVITY_LINK1_STATUS_PIVOT  2U /**< a pivot of the mass matrix vanishes, or the result is beyond 1e15 */
+#define GRAVITY_LINK1_STATUS_INPUT  4U /**< an input is not finite or beyond its bound */
 
 /** Indices of the base parameters. */
 enum {
@@ -150,7 +158,7 @@ const char *gravity_link1_model(void);
  *
  * @return GRAVITY_LINK1_STATUS_OK or GRAVITY_LINK1_STATUS_INPUT
  */
-int gravity_link1_check_parameters(const gravity_link1_real_t parameters[GRAVITY_LINK1_N_PARAMETERS]);
+gravity_link1_status_t gravity_link1_check_parameters(const gravity_link1_real_t parameters[GRAVITY_LINK1_N_PARAMETERS]);
 
 /**
  * Whether standard parameters can be used: finite, and their norm within its bound. Every function that takes them checks
@@ -158,7 +166,7 @@ int gravity_link1_check_parameters(const gravity_link1_real_t parameters[GRAVITY
  *
  * @return GRAVITY_LINK1_STATUS_OK or GRAVITY_LINK1_STATUS_INPUT
  */
-int gravity_link1_check_parameters_standard(const gravity_link1_real_t parameters[GRAVITY_LINK1_N_STANDARD_PARAMETERS]);
+gravity_link1_status_t gravity_link1_check_parameters_standard(const gravity_link1_real_t parameters[GRAVITY_LINK1_N_STANDARD_PARAMETERS]);
 
 /**
  * Inputs that give the accelerations ddq in the state q, dq; base parameters.
@@ -170,9 +178,9 @@ int gravity_link1_check_parameters_standard(const gravity_link1_real_t parameter
  * @param[out]  out         [1]  [N m]      inputs: motor currents, efforts where undriven
  * @return GRAVITY_LINK1_STATUS_OK or status bits
  *
- * Operations: 11 (7 mul, 4 add, 0 neg), 2 trig, 1 other.
+ * Operations: 11 (7 mul, 4 add, 0 neg), 2 trig, 1 other calls (sign, select and the like).
  */
-int gravity_link1_inverse_dynamics(
+gravity_link1_status_t gravity_link1_inverse_dynamics(
     const gravity_link1_real_t q[GRAVITY_LINK1_N_JOINTS],
     const gravity_link1_real_t dq[GRAVITY_LINK1_N_JOINTS],
     const gravity_link1_real_t ddq[GRAVITY_LINK1_N_JOINTS],
@@ -189,7 +197,7 @@ int gravity_link1_inverse_dynamics(
  *
  * Operations: 5 (4 mul, 1 add, 0 neg), 2 trig.
  */
-int gravity_link1_gravity(
+gravity_link1_status_t gravity_link1_gravity(
     const gravity_link1_real_t q[GRAVITY_LINK1_N_JOINTS],
     const gravity_link1_real_t parameters[GRAVITY_LINK1_N_PARAMETERS],
     gravity_link1_real_t out[GRAVITY_LINK1_N_JOINTS]);
@@ -203,9 +211,9 @@ int gravity_link1_gravity(
  * @param[out]  out         [1]  [N m]    inputs: motor currents, efforts where undriven
  * @return GRAVITY_LINK1_STATUS_OK or status bits
  *
- * Operations: 9 (6 mul, 3 add, 0 neg), 2 trig, 1 other.
+ * Operations: 9 (6 mul, 3 add, 0 neg), 2 trig, 1 other calls (sign, select and the like).
  */
-int gravity_link1_bias(
+gravity_link1_status_t gravity_link1_bias(
     const gravity_link1_real_t q[GRAVITY_LINK1_N_JOINTS],
     const gravity_link1_real_t dq[GRAVITY_LINK1_N_JOINTS],
     const gravity_link1_real_t parameters[GRAVITY_LINK1_N_PARAMETERS],
@@ -221,7 +229,7 @@ int gravity_link1_bias(
  *
  * Operations: 0 (0 mul, 0 add, 0 neg).
  */
-int gravity_link1_mass_matrix(
+gravity_link1_status_t gravity_link1_mass_matrix(
     const gravity_link1_real_t q[GRAVITY_LINK1_N_JOINTS],
     const gravity_link1_real_t parameters[GRAVITY_LINK1_N_PARAMETERS],
     gravity_link1_real_t out[GRAVITY_LINK1_N_JOINTS]);
@@ -236,9 +244,9 @@ int gravity_link1_mass_matrix(
  * @param[out]  out         [1]  [rad/s^2]  joint accelerations
  * @return GRAVITY_LINK1_STATUS_OK or status bits
  *
- * Operations: 11 (7 mul, 4 add, 0 neg), 1 div, 2 trig, 1 other.
+ * Operations: 11 (7 mul, 4 add, 0 neg), 1 div, 2 trig, 1 other calls (sign, select and the like).
  */
-int gravity_link1_forward_dynamics(
+gravity_link1_status_t gravity_link1_forward_dynamics(
     const gravity_link1_real_t q[GRAVITY_LINK1_N_JOINTS],
     const gravity_link1_real_t dq[GRAVITY_LINK1_N_JOINTS],
     const gravity_link1_real_t input[GRAVITY_LINK1_N_JOINTS],
@@ -257,7 +265,7 @@ int gravity_link1_forward_dynamics(
  *
  * Operations: 8 (7 mul, 1 add, 0 neg), 2 trig.
  */
-int gravity_link1_energy(
+gravity_link1_status_t gravity_link1_energy(
     const gravity_link1_real_t q[GRAVITY_LINK1_N_JOINTS],
     const gravity_link1_real_t dq[GRAVITY_LINK1_N_JOINTS],
     const gravity_link1_real_t parameters[GRAVITY_LINK1_N_PARAMETERS],
@@ -274,9 +282,9 @@ int gravity_link1_energy(
  *                                                         row-major
  * @return GRAVITY_LINK1_STATUS_OK or status bits
  *
- * Operations: 2 (2 mul, 0 add, 0 neg), 2 trig, 1 other.
+ * Operations: 2 (2 mul, 0 add, 0 neg), 2 trig, 1 other calls (sign, select and the like).
  */
-int gravity_link1_regressor(
+gravity_link1_status_t gravity_link1_regressor(
     const gravity_link1_real_t q[GRAVITY_LINK1_N_JOINTS],
     const gravity_link1_real_t dq[GRAVITY_LINK1_N_JOINTS],
     const gravity_link1_real_t ddq[GRAVITY_LINK1_N_JOINTS],
@@ -292,9 +300,9 @@ int gravity_link1_regressor(
  *                                                          12, row-major
  * @return GRAVITY_LINK1_STATUS_OK or status bits
  *
- * Operations: 2 (2 mul, 0 add, 0 neg), 2 trig, 1 other.
+ * Operations: 2 (2 mul, 0 add, 0 neg), 2 trig, 1 other calls (sign, select and the like).
  */
-int gravity_link1_regressor_standard(
+gravity_link1_status_t gravity_link1_regressor_standard(
     const gravity_link1_real_t q[GRAVITY_LINK1_N_JOINTS],
     const gravity_link1_real_t dq[GRAVITY_LINK1_N_JOINTS],
     const gravity_link1_real_t ddq[GRAVITY_LINK1_N_JOINTS],
@@ -309,9 +317,9 @@ int gravity_link1_regressor_standard(
  * @param[out]  out  [5]  [N m per unit of the parameter]  structural non-zeros, row after row
  * @return GRAVITY_LINK1_STATUS_OK or status bits
  *
- * Operations: 2 (2 mul, 0 add, 0 neg), 2 trig, 1 other.
+ * Operations: 2 (2 mul, 0 add, 0 neg), 2 trig, 1 other calls (sign, select and the like).
  */
-int gravity_link1_regressor_packed(
+gravity_link1_status_t gravity_link1_regressor_packed(
     const gravity_link1_real_t q[GRAVITY_LINK1_N_JOINTS],
     const gravity_link1_real_t dq[GRAVITY_LINK1_N_JOINTS],
     const gravity_link1_real_t ddq[GRAVITY_LINK1_N_JOINTS],
@@ -328,9 +336,9 @@ int gravity_link1_regressor_packed(
  *                                                           with dM/dt - 2 C skew-symmetric; 1 x 5, row-major
  * @return GRAVITY_LINK1_STATUS_OK or status bits
  *
- * Operations: 2 (2 mul, 0 add, 0 neg), 2 trig, 1 other.
+ * Operations: 2 (2 mul, 0 add, 0 neg), 2 trig, 1 other calls (sign, select and the like).
  */
-int gravity_link1_slotine_li_regressor(
+gravity_link1_status_t gravity_link1_slotine_li_regressor(
     const gravity_link1_real_t q[GRAVITY_LINK1_N_JOINTS],
     const gravity_link1_real_t dq[GRAVITY_LINK1_N_JOINTS],
     const gravity_link1_real_t dq_r[GRAVITY_LINK1_N_JOINTS],
@@ -347,9 +355,9 @@ int gravity_link1_slotine_li_regressor(
  * @param[out]  out         [1]   [N m]      inputs: motor currents, efforts where undriven
  * @return GRAVITY_LINK1_STATUS_OK or status bits
  *
- * Operations: 11 (7 mul, 4 add, 0 neg), 2 trig, 1 other.
+ * Operations: 11 (7 mul, 4 add, 0 neg), 2 trig, 1 other calls (sign, select and the like).
  */
-int gravity_link1_inverse_dynamics_standard(
+gravity_link1_status_t gravity_link1_inverse_dynamics_standard(
     const gravity_link1_real_t q[GRAVITY_LINK1_N_JOINTS],
     const gravity_link1_real_t dq[GRAVITY_LINK1_N_JOINTS],
     const gravity_link1_real_t ddq[GRAVITY_LINK1_N_JOINTS],
@@ -366,7 +374,7 @@ int gravity_link1_inverse_dynamics_standard(
  *
  * Operations: 5 (4 mul, 1 add, 0 neg), 2 trig.
  */
-int gravity_link1_gravity_standard(
+gravity_link1_status_t gravity_link1_gravity_standard(
     const gravity_link1_real_t q[GRAVITY_LINK1_N_JOINTS],
     const gravity_link1_real_t parameters[GRAVITY_LINK1_N_STANDARD_PARAMETERS],
     gravity_link1_real_t out[GRAVITY_LINK1_N_JOINTS]);
@@ -380,9 +388,9 @@ int gravity_link1_gravity_standard(
  * @param[out]  out         [1]   [N m]    inputs: motor currents, efforts where undriven
  * @return GRAVITY_LINK1_STATUS_OK or status bits
  *
- * Operations: 9 (6 mul, 3 add, 0 neg), 2 trig, 1 other.
+ * Operations: 9 (6 mul, 3 add, 0 neg), 2 trig, 1 other calls (sign, select and the like).
  */
-int gravity_link1_bias_standard(
+gravity_link1_status_t gravity_link1_bias_standard(
     const gravity_link1_real_t q[GRAVITY_LINK1_N_JOINTS],
     const gravity_link1_real_t dq[GRAVITY_LINK1_N_JOINTS],
     const gravity_link1_real_t parameters[GRAVITY_LINK1_N_STANDARD_PARAMETERS],
@@ -398,7 +406,7 @@ int gravity_link1_bias_standard(
  *
  * Operations: 0 (0 mul, 0 add, 0 neg).
  */
-int gravity_link1_mass_matrix_standard(
+gravity_link1_status_t gravity_link1_mass_matrix_standard(
     const gravity_link1_real_t q[GRAVITY_LINK1_N_JOINTS],
     const gravity_link1_real_t parameters[GRAVITY_LINK1_N_STANDARD_PARAMETERS],
     gravity_link1_real_t out[GRAVITY_LINK1_N_JOINTS]);
@@ -414,9 +422,9 @@ int gravity_link1_mass_matrix_standard(
  * @param[out]  out         [1]   [rad/s^2]  joint accelerations
  * @return GRAVITY_LINK1_STATUS_OK or status bits
  *
- * Operations: 11 (7 mul, 4 add, 0 neg), 1 div, 2 trig, 1 other.
+ * Operations: 11 (7 mul, 4 add, 0 neg), 1 div, 2 trig, 1 other calls (sign, select and the like).
  */
-int gravity_link1_forward_dynamics_standard(
+gravity_link1_status_t gravity_link1_forward_dynamics_standard(
     const gravity_link1_real_t q[GRAVITY_LINK1_N_JOINTS],
     const gravity_link1_real_t dq[GRAVITY_LINK1_N_JOINTS],
     const gravity_link1_real_t input[GRAVITY_LINK1_N_JOINTS],
@@ -435,7 +443,7 @@ int gravity_link1_forward_dynamics_standard(
  *
  * Operations: 8 (7 mul, 1 add, 0 neg), 2 trig.
  */
-int gravity_link1_energy_standard(
+gravity_link1_status_t gravity_link1_energy_standard(
     const gravity_link1_real_t q[GRAVITY_LINK1_N_JOINTS],
     const gravity_link1_real_t dq[GRAVITY_LINK1_N_JOINTS],
     const gravity_link1_real_t parameters[GRAVITY_LINK1_N_STANDARD_PARAMETERS],
@@ -451,7 +459,7 @@ int gravity_link1_energy_standard(
  *
  * Operations: 1 (0 mul, 0 add, 1 neg), 2 trig.
  */
-int gravity_link1_forward_kinematics(
+gravity_link1_status_t gravity_link1_forward_kinematics(
     const gravity_link1_real_t q[GRAVITY_LINK1_N_JOINTS],
     gravity_link1_real_t out[16 * GRAVITY_LINK1_N_LINKS]);
 
@@ -464,7 +472,7 @@ int gravity_link1_forward_kinematics(
  *
  * Operations: 0 (0 mul, 0 add, 0 neg).
  */
-int gravity_link1_jacobian(
+gravity_link1_status_t gravity_link1_jacobian(
     const gravity_link1_real_t q[GRAVITY_LINK1_N_JOINTS],
     gravity_link1_real_t out[6 * GRAVITY_LINK1_N_JOINTS]);
 
@@ -481,7 +489,7 @@ int gravity_link1_jacobian(
  *
  * Operations: 0 (0 mul, 0 add, 0 neg).
  */
-int gravity_link1_motor_from_joint(
+gravity_link1_status_t gravity_link1_motor_from_joint(
     const gravity_link1_real_t q[GRAVITY_LINK1_N_JOINTS],
     const gravity_link1_real_t dq[GRAVITY_LINK1_N_JOINTS],
     const gravity_link1_real_t ddq[GRAVITY_LINK1_N_JOINTS],
@@ -502,7 +510,7 @@ int gravity_link1_motor_from_joint(
  *
  * Operations: 0 (0 mul, 0 add, 0 neg).
  */
-int gravity_link1_joint_from_motor(
+gravity_link1_status_t gravity_link1_joint_from_motor(
     const gravity_link1_real_t q_m[GRAVITY_LINK1_N_JOINTS],
     const gravity_link1_real_t dq_m[GRAVITY_LINK1_N_JOINTS],
     const gravity_link1_real_t ddq_m[GRAVITY_LINK1_N_JOINTS],
@@ -513,13 +521,13 @@ int gravity_link1_joint_from_motor(
 /**
  * Joint effort per input.
  *
- * @param[in]   q    [1]  [rad]              joint coordinates; norm at most 10000
- * @param[out]  out  [1]  [(N m) per (N m)]  drive gains K
+ * @param[in]   q    [1]  [rad]          joint coordinates; norm at most 10000
+ * @param[out]  out  [1]  [N m per N m]  drive gains K
  * @return GRAVITY_LINK1_STATUS_OK or status bits
  *
  * Operations: 0 (0 mul, 0 add, 0 neg).
  */
-int gravity_link1_drive_gain(
+gravity_link1_status_t gravity_link1_drive_gain(
     const gravity_link1_real_t q[GRAVITY_LINK1_N_JOINTS],
     gravity_link1_real_t out[GRAVITY_LINK1_N_JOINTS]);
 
@@ -527,19 +535,19 @@ int gravity_link1_drive_gain(
  * Inputs that give the accelerations ddq, and their derivatives; at a kink of a law, as of dry
  * friction at rest, the mean of both sides; base parameters.
  *
- * @param[in]   q             [1]  [rad]                  joint coordinates; norm at most 10000
- * @param[in]   dq            [1]  [rad/s]                joint velocities; norm at most 100000
- * @param[in]   ddq           [1]  [rad/s^2]              joint accelerations; norm at most 1e+08
- * @param[in]   parameters    [5]                         base parameters; norm at most 1e+09
- * @param[out]  input         [1]  [N m]                  inputs: motor currents, efforts where undriven
- * @param[out]  input_by_q    [1]  [(N m) per (rad)]      d input / d q
- * @param[out]  input_by_dq   [1]  [(N m) per (rad/s)]    d input / d dq
- * @param[out]  input_by_ddq  [1]  [(N m) per (rad/s^2)]  d input / d ddq
+ * @param[in]   q             [1]  [rad]                joint coordinates; norm at most 10000
+ * @param[in]   dq            [1]  [rad/s]              joint velocities; norm at most 100000
+ * @param[in]   ddq           [1]  [rad/s^2]            joint accelerations; norm at most 1e+08
+ * @param[in]   parameters    [5]                       base parameters; norm at most 1e+09
+ * @param[out]  input         [1]  [N m]                inputs: motor currents, efforts where undriven
+ * @param[out]  input_by_q    [1]  [N m per rad]        d input / d q
+ * @param[out]  input_by_dq   [1]  [N m per (rad/s)]    d input / d dq
+ * @param[out]  input_by_ddq  [1]  [N m per (rad/s^2)]  d input / d ddq
  * @return GRAVITY_LINK1_STATUS_OK or status bits
  *
- * Operations: 14 (9 mul, 5 add, 0 neg), 2 trig, 1 other.
+ * Operations: 14 (9 mul, 5 add, 0 neg), 2 trig, 1 other calls (sign, select and the like).
  */
-int gravity_link1_inverse_dynamics_derivatives(
+gravity_link1_status_t gravity_link1_inverse_dynamics_derivatives(
     const gravity_link1_real_t q[GRAVITY_LINK1_N_JOINTS],
     const gravity_link1_real_t dq[GRAVITY_LINK1_N_JOINTS],
     const gravity_link1_real_t ddq[GRAVITY_LINK1_N_JOINTS],
@@ -559,14 +567,14 @@ int gravity_link1_inverse_dynamics_derivatives(
  *                                                          norm at most 1e+09
  * @param[in]   parameters    [5]                           base parameters; norm at most 1e+09
  * @param[out]  ddq           [1]  [rad/s^2]                joint accelerations
- * @param[out]  ddq_by_q      [1]  [(rad/s^2) per (rad)]    d ddq / d q
+ * @param[out]  ddq_by_q      [1]  [(rad/s^2) per rad]      d ddq / d q
  * @param[out]  ddq_by_dq     [1]  [(rad/s^2) per (rad/s)]  d ddq / d dq
- * @param[out]  ddq_by_input  [1]  [(rad/s^2) per (N m)]    d ddq / d input
+ * @param[out]  ddq_by_input  [1]  [(rad/s^2) per N m]      d ddq / d input
  * @return GRAVITY_LINK1_STATUS_OK or status bits
  *
- * Operations: 17 (11 mul, 5 add, 1 neg), 1 div, 2 trig, 1 other.
+ * Operations: 17 (11 mul, 5 add, 1 neg), 1 div, 2 trig, 1 other calls (sign, select and the like).
  */
-int gravity_link1_forward_dynamics_derivatives(
+gravity_link1_status_t gravity_link1_forward_dynamics_derivatives(
     const gravity_link1_real_t q[GRAVITY_LINK1_N_JOINTS],
     const gravity_link1_real_t dq[GRAVITY_LINK1_N_JOINTS],
     const gravity_link1_real_t input[GRAVITY_LINK1_N_JOINTS],
@@ -580,19 +588,19 @@ int gravity_link1_forward_dynamics_derivatives(
  * Inputs that give the accelerations ddq, and their derivatives; at a kink of a law, as of dry
  * friction at rest, the mean of both sides; standard parameters.
  *
- * @param[in]   q             [1]   [rad]                  joint coordinates; norm at most 10000
- * @param[in]   dq            [1]   [rad/s]                joint velocities; norm at most 100000
- * @param[in]   ddq           [1]   [rad/s^2]              joint accelerations; norm at most 1e+08
- * @param[in]   parameters    [12]                         standard parameters; norm at most 1e+09
- * @param[out]  input         [1]   [N m]                  inputs: motor currents, efforts where undriven
- * @param[out]  input_by_q    [1]   [(N m) per (rad)]      d input / d q
- * @param[out]  input_by_dq   [1]   [(N m) per (rad/s)]    d input / d dq
- * @param[out]  input_by_ddq  [1]   [(N m) per (rad/s^2)]  d input / d ddq
+ * @param[in]   q             [1]   [rad]                joint coordinates; norm at most 10000
+ * @param[in]   dq            [1]   [rad/s]              joint velocities; norm at most 100000
+ * @param[in]   ddq           [1]   [rad/s^2]            joint accelerations; norm at most 1e+08
+ * @param[in]   parameters    [12]                       standard parameters; norm at most 1e+09
+ * @param[out]  input         [1]   [N m]                inputs: motor currents, efforts where undriven
+ * @param[out]  input_by_q    [1]   [N m per rad]        d input / d q
+ * @param[out]  input_by_dq   [1]   [N m per (rad/s)]    d input / d dq
+ * @param[out]  input_by_ddq  [1]   [N m per (rad/s^2)]  d input / d ddq
  * @return GRAVITY_LINK1_STATUS_OK or status bits
  *
- * Operations: 14 (9 mul, 5 add, 0 neg), 2 trig, 1 other.
+ * Operations: 14 (9 mul, 5 add, 0 neg), 2 trig, 1 other calls (sign, select and the like).
  */
-int gravity_link1_inverse_dynamics_derivatives_standard(
+gravity_link1_status_t gravity_link1_inverse_dynamics_derivatives_standard(
     const gravity_link1_real_t q[GRAVITY_LINK1_N_JOINTS],
     const gravity_link1_real_t dq[GRAVITY_LINK1_N_JOINTS],
     const gravity_link1_real_t ddq[GRAVITY_LINK1_N_JOINTS],
@@ -612,14 +620,14 @@ int gravity_link1_inverse_dynamics_derivatives_standard(
  *                                                           norm at most 1e+09
  * @param[in]   parameters    [12]                           standard parameters; norm at most 1e+09
  * @param[out]  ddq           [1]   [rad/s^2]                joint accelerations
- * @param[out]  ddq_by_q      [1]   [(rad/s^2) per (rad)]    d ddq / d q
+ * @param[out]  ddq_by_q      [1]   [(rad/s^2) per rad]      d ddq / d q
  * @param[out]  ddq_by_dq     [1]   [(rad/s^2) per (rad/s)]  d ddq / d dq
- * @param[out]  ddq_by_input  [1]   [(rad/s^2) per (N m)]    d ddq / d input
+ * @param[out]  ddq_by_input  [1]   [(rad/s^2) per N m]      d ddq / d input
  * @return GRAVITY_LINK1_STATUS_OK or status bits
  *
- * Operations: 17 (11 mul, 5 add, 1 neg), 1 div, 2 trig, 1 other.
+ * Operations: 17 (11 mul, 5 add, 1 neg), 1 div, 2 trig, 1 other calls (sign, select and the like).
  */
-int gravity_link1_forward_dynamics_derivatives_standard(
+gravity_link1_status_t gravity_link1_forward_dynamics_derivatives_standard(
     const gravity_link1_real_t q[GRAVITY_LINK1_N_JOINTS],
     const gravity_link1_real_t dq[GRAVITY_LINK1_N_JOINTS],
     const gravity_link1_real_t input[GRAVITY_LINK1_N_JOINTS],
@@ -628,6 +636,66 @@ int gravity_link1_forward_dynamics_derivatives_standard(
     gravity_link1_real_t ddq_by_q[GRAVITY_LINK1_N_JOINTS],
     gravity_link1_real_t ddq_by_dq[GRAVITY_LINK1_N_JOINTS],
     gravity_link1_real_t ddq_by_input[GRAVITY_LINK1_N_JOINTS]);
+
+/**
+ * External efforts at the joints by the generalised momentum, with a delay of 1 / gain; state: zero at
+ * first, then what the step before gave; base parameters.
+ *
+ * @param[in]   q           [1]  [rad]       joint coordinates; norm at most 10000
+ * @param[in]   dq          [1]  [rad/s]     joint velocities; norm at most 100000
+ * @param[in]   input       [1]  [N m]       inputs: motor currents, efforts where undriven; norm at most
+ *                                           1e+09
+ * @param[in]   dt          [1]  [s]         time step; norm at most 10000
+ * @param[in]   gain        [1]  [1/s]       gains of the observer, gain dt below 1; norm at most 100000
+ * @param[in]   parameters  [5]              base parameters; norm at most 1e+09
+ * @param[in]   state       [1]  [kg m^2/s]  state of the observer: the momentum that the model expects; norm
+ *                                           at most 1e+09
+ * @param[out]  state_next  [1]  [kg m^2/s]  state after the step
+ * @param[out]  external    [1]  [N m]       efforts that act on the arm from outside
+ * @return GRAVITY_LINK1_STATUS_OK or status bits
+ *
+ * Operations: 19 (10 mul, 8 add, 1 neg), 2 trig, 1 other calls (sign, select and the like).
+ */
+gravity_link1_status_t gravity_link1_momentum_observer_step(
+    const gravity_link1_real_t q[GRAVITY_LINK1_N_JOINTS],
+    const gravity_link1_real_t dq[GRAVITY_LINK1_N_JOINTS],
+    const gravity_link1_real_t input[GRAVITY_LINK1_N_JOINTS],
+    const gravity_link1_real_t dt[1],
+    const gravity_link1_real_t gain[GRAVITY_LINK1_N_JOINTS],
+    const gravity_link1_real_t parameters[GRAVITY_LINK1_N_PARAMETERS],
+    const gravity_link1_real_t state[GRAVITY_LINK1_N_OBSERVER_STATES],
+    gravity_link1_real_t state_next[GRAVITY_LINK1_N_OBSERVER_STATES],
+    gravity_link1_real_t external[GRAVITY_LINK1_N_JOINTS]);
+
+/**
+ * External efforts at the joints by the generalised momentum, with a delay of 1 / gain; state: zero at
+ * first, then what the step before gave; standard parameters.
+ *
+ * @param[in]   q           [1]   [rad]       joint coordinates; norm at most 10000
+ * @param[in]   dq          [1]   [rad/s]     joint velocities; norm at most 100000
+ * @param[in]   input       [1]   [N m]       inputs: motor currents, efforts where undriven; norm at most
+ *                                            1e+09
+ * @param[in]   dt          [1]   [s]         time step; norm at most 10000
+ * @param[in]   gain        [1]   [1/s]       gains of the observer, gain dt below 1; norm at most 100000
+ * @param[in]   parameters  [12]              standard parameters; norm at most 1e+09
+ * @param[in]   state       [1]   [kg m^2/s]  state of the observer: the momentum that the model expects; norm
+ *                                            at most 1e+09
+ * @param[out]  state_next  [1]   [kg m^2/s]  state after the step
+ * @param[out]  external    [1]   [N m]       efforts that act on the arm from outside
+ * @return GRAVITY_LINK1_STATUS_OK or status bits
+ *
+ * Operations: 19 (10 mul, 8 add, 1 neg), 2 trig, 1 other calls (sign, select and the like).
+ */
+gravity_link1_status_t gravity_link1_momentum_observer_step_standard(
+    const gravity_link1_real_t q[GRAVITY_LINK1_N_JOINTS],
+    const gravity_link1_real_t dq[GRAVITY_LINK1_N_JOINTS],
+    const gravity_link1_real_t input[GRAVITY_LINK1_N_JOINTS],
+    const gravity_link1_real_t dt[1],
+    const gravity_link1_real_t gain[GRAVITY_LINK1_N_JOINTS],
+    const gravity_link1_real_t parameters[GRAVITY_LINK1_N_STANDARD_PARAMETERS],
+    const gravity_link1_real_t state[GRAVITY_LINK1_N_OBSERVER_STATES],
+    gravity_link1_real_t state_next[GRAVITY_LINK1_N_OBSERVER_STATES],
+    gravity_link1_real_t external[GRAVITY_LINK1_N_JOINTS]);
 
 #ifdef __cplusplus
 }

@@ -6,7 +6,7 @@
  * Arm gravity_link1, description e56ff0e07e464bfe.
  * SPDX-License-Identifier: 0BSD
  *
- * Operations: 9 (6 mul, 3 add, 0 neg), 2 trig, 1 other.
+ * Operations: 9 (6 mul, 3 add, 0 neg), 2 trig, 1 other calls (sign, select and the like).
  *
  * @param[in]   q           [1]  [rad]    joint coordinates; norm at most 10000
  * @param[in]   dq          [1]  [rad/s]  joint velocities; norm at most 100000
@@ -27,18 +27,18 @@
  */
 #include "gravity_link1_private.h"
 
-#if GRAVITY_LINK1_GENERATION != 0xEF47084EUL
+#if GRAVITY_LINK1_GENERATION != 0x0A001FB0UL
 #error "gravity_link1.h and gravity_link1_bias.c are of different generations: generate the arm again"
 #endif
 
-int gravity_link1_bias(
+gravity_link1_status_t gravity_link1_bias(
     const gravity_link1_real_t q[GRAVITY_LINK1_N_JOINTS],
     const gravity_link1_real_t dq[GRAVITY_LINK1_N_JOINTS],
     const gravity_link1_real_t parameters[GRAVITY_LINK1_N_PARAMETERS],
     gravity_link1_real_t out[GRAVITY_LINK1_N_JOINTS])
 {
     enum { ZZ1 = 0, MX1, MY1, FV1, FC1 };
-    int status = GRAVITY_LINK1_STATUS_OK;
+    gravity_link1_status_t status = GRAVITY_LINK1_STATUS_OK;
 
     if (!gravity_link1_within_joints(q, GRAVITY_LINK1_C(1.0e8))
         || !gravity_link1_within_joints(dq, GRAVITY_LINK1_C(1.0e10))
@@ -52,7 +52,7 @@ int gravity_link1_bias(
 
     gravity_link1_real_t t1, t2;
     GRAVITY_LINK1_SINCOS(q[0], &t1, &t2);
-    const gravity_link1_real_t t0 = gravity_link1_sign(dq[0]);
+    const gravity_link1_real_t t0 = gravity_link1_sign(dq[0]); /* joint j1: coulomb_friction */
     const gravity_link1_real_t t3 = parameters[FV1] * dq[0] + parameters[FC1] * t0
         + (parameters[MX1] * (GRAVITY_LINK1_C(9.81) * t1) + parameters[MY1] * (GRAVITY_LINK1_C(9.81) * t2));
     out[0] = t3;

@@ -8,16 +8,16 @@
  */
 #include "gravity_link1_private.h"
 
-#if GRAVITY_LINK1_GENERATION != 0xEF47084EUL
+#if GRAVITY_LINK1_GENERATION != 0x0A001FB0UL
 #error "gravity_link1.h and gravity_link1_check_parameters.c are of different generations: generate the arm again"
 #endif
 
-int gravity_link1_check_parameters(const gravity_link1_real_t parameters[GRAVITY_LINK1_N_PARAMETERS])
+gravity_link1_status_t gravity_link1_check_parameters(const gravity_link1_real_t parameters[GRAVITY_LINK1_N_PARAMETERS])
 {
     return gravity_link1_within(parameters, 5, GRAVITY_LINK1_C(1.0e18)) ? GRAVITY_LINK1_STATUS_OK : GRAVITY_LINK1_STATUS_INPUT;
 }
 
-int gravity_link1_check_parameters_standard(const gravity_link1_real_t parameters[GRAVITY_LINK1_N_STANDARD_PARAMETERS])
+gravity_link1_status_t gravity_link1_check_parameters_standard(const gravity_link1_real_t parameters[GRAVITY_LINK1_N_STANDARD_PARAMETERS])
 {
     return gravity_link1_within(parameters, 12, GRAVITY_LINK1_C(1.0e18)) ? GRAVITY_LINK1_STATUS_OK : GRAVITY_LINK1_STATUS_INPUT;
 }

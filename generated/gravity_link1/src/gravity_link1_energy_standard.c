@@ -35,11 +35,11 @@
  */
 #include "gravity_link1_private.h"
 
-#if GRAVITY_LINK1_GENERATION != 0xEF47084EUL
+#if GRAVITY_LINK1_GENERATION != 0x0A001FB0UL
 #error "gravity_link1.h and gravity_link1_energy_standard.c are of different generations: generate the arm again"
 #endif
 
-int gravity_link1_energy_standard(
+gravity_link1_status_t gravity_link1_energy_standard(
     const gravity_link1_real_t q[GRAVITY_LINK1_N_JOINTS],
     const gravity_link1_real_t dq[GRAVITY_LINK1_N_JOINTS],
     const gravity_link1_real_t parameters[GRAVITY_LINK1_N_STANDARD_PARAMETERS],
@@ -47,7 +47,7 @@ int gravity_link1_energy_standard(
     gravity_link1_real_t potential[1])
 {
     enum { XX1 = 0, XY1, XZ1, YY1, YZ1, ZZ1, MX1, MY1, MZ1, M1, FV1, FC1 };
-    int status = GRAVITY_LINK1_STATUS_OK;
+    gravity_link1_status_t status = GRAVITY_LINK1_STATUS_OK;
 
     if (!gravity_link1_within_joints(q, GRAVITY_LINK1_C(1.0e8))
         || !gravity_link1_within_joints(dq, GRAVITY_LINK1_C(1.0e10))

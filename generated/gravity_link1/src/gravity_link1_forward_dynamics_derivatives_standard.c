@@ -7,7 +7,7 @@
  * Arm gravity_link1, description e56ff0e07e464bfe.
  * SPDX-License-Identifier: 0BSD
  *
- * Operations: 17 (11 mul, 5 add, 1 neg), 1 div, 2 trig, 1 other.
+ * Operations: 17 (11 mul, 5 add, 1 neg), 1 div, 2 trig, 1 other calls (sign, select and the like).
  *
  * @param[in]   q             [1]   [rad]                    joint coordinates; norm at most 10000
  * @param[in]   dq            [1]   [rad/s]                  joint velocities; norm at most 100000
@@ -15,9 +15,9 @@
  *                                                           norm at most 1e+09
  * @param[in]   parameters    [12]                           standard parameters; norm at most 1e+09
  * @param[out]  ddq           [1]   [rad/s^2]                joint accelerations
- * @param[out]  ddq_by_q      [1]   [(rad/s^2) per (rad)]    d ddq / d q
+ * @param[out]  ddq_by_q      [1]   [(rad/s^2) per rad]      d ddq / d q
  * @param[out]  ddq_by_dq     [1]   [(rad/s^2) per (rad/s)]  d ddq / d dq
- * @param[out]  ddq_by_input  [1]   [(rad/s^2) per (N m)]    d ddq / d input
+ * @param[out]  ddq_by_input  [1]   [(rad/s^2) per N m]      d ddq / d input
  *
  * Coordinates:
  *
@@ -40,11 +40,11 @@
  */
 #include "gravity_link1_private.h"
 
-#if GRAVITY_LINK1_GENERATION != 0xEF47084EUL
+#if GRAVITY_LINK1_GENERATION != 0x0A001FB0UL
 #error "gravity_link1.h and gravity_link1_forward_dynamics_derivatives_standard.c are of different generations: generate the arm again"
 #endif
 
-int gravity_link1_forward_dynamics_derivatives_standard(
+gravity_link1_status_t gravity_link1_forward_dynamics_derivatives_standard(
     const gravity_link1_real_t q[GRAVITY_LINK1_N_JOINTS],
     const gravity_link1_real_t dq[GRAVITY_LINK1_N_JOINTS],
     const gravity_link1_real_t input[GRAVITY_LINK1_N_JOINTS],
@@ -55,7 +55,7 @@ int gravity_link1_forward_dynamics_derivatives_standard(
     gravity_link1_real_t ddq_by_input[GRAVITY_LINK1_N_JOINTS])
 {
     enum { XX1 = 0, XY1, XZ1, YY1, YZ1, ZZ1, MX1, MY1, MZ1, M1, FV1, FC1 };
-    int status = GRAVITY_LINK1_STATUS_OK;
+    gravity_link1_status_t status = GRAVITY_LINK1_STATUS_OK;
 
     if (!gravity_link1_within_joints(q, GRAVITY_LINK1_C(1.0e8))
         || !gravity_link1_within_joints(dq, GRAVITY_LINK1_C(1.0e10))
@@ -80,8 +80,8 @@ int gravity_link1_forward_dynamics_derivatives_standard(
         gravity_link1_zero(ddq_by_input, 1);
         return GRAVITY_LINK1_STATUS_PIVOT;
     }
-    const gravity_link1_real_t t0 = gravity_link1_sign(dq[0]);
-    const gravity_link1_real_t t2 = GRAVITY_LINK1_C(9.81) * t1;
+    const gravity_link1_real_t t0 = gravity_link1_sign(dq[0]); /* joint j1: coulomb_friction */
+    const gravity_link1_real_t t2 = GRAVITY_LINK1_C(9.81) * t1; /* link j1: motion */
     const gravity_link1_real_t t4 = GRAVITY_LINK1_C(-9.81) * t3;
     const gravity_link1_real_t t5 = t4 * parameters[MY1] - t2 * parameters[MX1] - (dq[0] * parameters[FV1]
         + t0 * parameters[FC1]);

@@ -17,15 +17,15 @@
  */
 #include "gravity_link1_private.h"
 
-#if GRAVITY_LINK1_GENERATION != 0xEF47084EUL
+#if GRAVITY_LINK1_GENERATION != 0x0A001FB0UL
 #error "gravity_link1.h and gravity_link1_forward_kinematics.c are of different generations: generate the arm again"
 #endif
 
-int gravity_link1_forward_kinematics(
+gravity_link1_status_t gravity_link1_forward_kinematics(
     const gravity_link1_real_t q[GRAVITY_LINK1_N_JOINTS],
     gravity_link1_real_t out[16 * GRAVITY_LINK1_N_LINKS])
 {
-    int status = GRAVITY_LINK1_STATUS_OK;
+    gravity_link1_status_t status = GRAVITY_LINK1_STATUS_OK;
 
     if (!gravity_link1_within_joints(q, GRAVITY_LINK1_C(1.0e8))) {
         status |= GRAVITY_LINK1_STATUS_INPUT;

@@ -21,11 +21,11 @@
  */
 #include "gravity_link1_private.h"
 
-#if GRAVITY_LINK1_GENERATION != 0xEF47084EUL
+#if GRAVITY_LINK1_GENERATION != 0x0A001FB0UL
 #error "gravity_link1.h and gravity_link1_joint_from_motor.c are of different generations: generate the arm again"
 #endif
 
-int gravity_link1_joint_from_motor(
+gravity_link1_status_t gravity_link1_joint_from_motor(
     const gravity_link1_real_t q_m[GRAVITY_LINK1_N_JOINTS],
     const gravity_link1_real_t dq_m[GRAVITY_LINK1_N_JOINTS],
     const gravity_link1_real_t ddq_m[GRAVITY_LINK1_N_JOINTS],
@@ -33,7 +33,7 @@ int gravity_link1_joint_from_motor(
     gravity_link1_real_t dq[GRAVITY_LINK1_N_JOINTS],
     gravity_link1_real_t ddq[GRAVITY_LINK1_N_JOINTS])
 {
-    int status = GRAVITY_LINK1_STATUS_OK;
+    gravity_link1_status_t status = GRAVITY_LINK1_STATUS_OK;
 
     if (!gravity_link1_within_joints(q_m, GRAVITY_LINK1_C(1.0e18))
         || !gravity_link1_within_joints(dq_m, GRAVITY_LINK1_C(1.0e18))

@@ -11,7 +11,8 @@
  *
  * Every function returns GRAVITY_LINK1_LOADED_STATUS_OK, or the sum of the GRAVITY_LINK1_LOADED_STATUS_ bits that apply; all of
  * its outputs are then zero. Inputs are checked by their Euclidean norm, so one that is not finite is
- * found too (not with -ffast-math). Outputs may not overlap inputs. Matrices are row-major.
+ * found too (not with -ffast-math). Outputs may not overlap inputs. Matrices are row-major. In the sources a
+ * remark behind a value says which link or joint it belongs to, and those after it up to the next remark.
  *
  * Coordinates:
  *
@@ -29,7 +30,7 @@
 #define GRAVITY_LINK1_LOADED_H
 
 /** Number of this generation: header and sources of different ones do not compile together. */
-#define GRAVITY_LINK1_LOADED_GENERATION 0xFB2F919BUL
+#define GRAVITY_LINK1_LOADED_GENERATION 0x53FE3FFFUL
 
 /** SHA-256 of the description that this is the model of, then after a blank the description's version, if any. */
 #define GRAVITY_LINK1_LOADED_MODEL "35cb3f0e339eb026e7d13df10e390c03982cefd083db334d922518eb90e3f495"
@@ -81,6 +82,8 @@
 #define gravity_link1_loaded_forward_dynamics_derivatives gravity_link1_loaded_forward_dynamics_derivatives_float
 #define gravity_link1_loaded_inverse_dynamics_derivatives_standard gravity_link1_loaded_inverse_dynamics_derivatives_standard_float
 #define gravity_link1_loaded_forward_dynamics_derivatives_standard gravity_link1_loaded_forward_dynamics_derivatives_standard_float
+#define gravity_link1_loaded_momentum_observer_step gravity_link1_loaded_momentum_observer_step_float
+#define gravity_link1_loaded_momentum_observer_step_standard gravity_link1_loaded_momentum_observer_step_standard_float
 #define gravity_link1_loaded_check_parameters gravity_link1_loaded_check_parameters_float
 #define gravity_link1_loaded_check_parameters_standard gravity_link1_loaded_check_parameters_standard_float
 #define gravity_link1_loaded_model gravity_link1_loaded_model_float
@@ -101,11 +104,16 @@ typedef GRAVITY_LINK1_LOADED_REAL gravity_link1_loaded_real_t;
 #define GRAVITY_LINK1_LOADED_N_PARAMETERS           5   /**< base parameters */
 #define GRAVITY_LINK1_LOADED_N_STANDARD_PARAMETERS  22  /**< standard parameters */
 #define GRAVITY_LINK1_LOADED_N_PACKED               5   /**< structural non-zeros of the regressor */
+#define GRAVITY_LINK1_LOADED_N_OBSERVER_STATES      1   /**< state of the observer: the momentum that the
+                                                        model expects */
 
-#define GRAVITY_LINK1_LOADED_STATUS_OK     0
-#define GRAVITY_LINK1_LOADED_STATUS_STROKE 1 /**< a lever would leave its stroke */
-#define GRAVITY_LINK1_LOADED_STATUS_PIVOT  2 /**< a pivot of the mass matrix vanishes, or the result is beyond 1e15 */
-#define GRAVITY_LINK1_LOADED_STATUS_INPUT  4 /**< an input is not finite or beyond its bound */
+/** GRAVITY_LINK1_LOADED_STATUS_OK or bits of the others. */
+typedef unsigned int gravity_link1_loaded_status_t;
+
+#define GRAVITY_LINK1_LOADED_STATUS_OK     0U
+#define GRAVITY_LINK1_LOADED_STATUS_STROKE 1U /**< a lever would leave its stroke */
+#define GRAVITY_LINK1_LOADED_STATUS_PIVOT  2U /**< a pivot of the mass matrix vanishes, or the result is beyond 1e15 */
+#define GRAVITY_LINK1_LOADED_STATUS_INPUT  4U /**< an input is not finite or beyond its bound */
 
 /** Indices of the base parameters. */
 enum {
@@ -160,7 +168,7 @@ const char *gravity_link1_loaded_model(void);
  *
  * @return GRAVITY_LINK1_LOADED_STATUS_OK or GRAVITY_LINK1_LOADED_STATUS_INPUT
  */
-int gravity_link1_loaded_check_parameters(const gravity_link1_loaded_real_t parameters[GRAVITY_LINK1_LOADED_N_PARAMETERS]);
+gravity_link1_loaded_status_t gravity_link1_loaded_check_parameters(const gravity_link1_loaded_real_t parameters[GRAVITY_LINK1_LOADED_N_PARAMETERS]);
 
 /**
  * Whether standard parameters can be used: finite, and their norm within its bound. Every function that takes them checks
@@ -168,7 +176,7 @@ int gravity_link1_loaded_check_parameters(const gravity_link1_loaded_real_t para
  *
  * @return GRAVITY_LINK1_LOADED_STATUS_OK or GRAVITY_LINK1_LOADED_STATUS_INPUT
  */
-int gravity_link1_loaded_check_parameters_standard(const gravity_link1_loaded_real_t parameters[GRAVITY_LINK1_LOADED_N_STANDARD_PARAMETERS]);
+gravity_link1_loaded_status_t gravity_link1_loaded_check_parameters_standard(const gravity_link1_loaded_real_t parameters[GRAVITY_LINK1_LOADED_N_STANDARD_PARAMETERS]);
 
 /**
  * Inputs that give the accelerations ddq in the state q, dq; base parameters.
@@ -180,9 +188,9 @@ int gravity_link1_loaded_check_parameters_standard(const gravity_link1_loaded_re
  * @param[out]  out         [1]  [N m]      inputs: motor currents, efforts where undriven
  * @return GRAVITY_LINK1_LOADED_STATUS_OK or status bits
  *
- * Operations: 11 (7 mul, 4 add, 0 neg), 2 trig, 1 other.
+ * Operations: 11 (7 mul, 4 add, 0 neg), 2 trig, 1 other calls (sign, select and the like).
  */
-int gravity_link1_loaded_inverse_dynamics(
+gravity_link1_loaded_status_t gravity_link1_loaded_inverse_dynamics(
     const gravity_link1_loaded_real_t q[GRAVITY_LINK1_LOADED_N_JOINTS],
     const gravity_link1_loaded_real_t dq[GRAVITY_LINK1_LOADED_N_JOINTS],
     const gravity_link1_loaded_real_t ddq[GRAVITY_LINK1_LOADED_N_JOINTS],
@@ -199,7 +207,7 @@ int gravity_link1_loaded_inverse_dynamics(
  *
  * Operations: 5 (4 mul, 1 add, 0 neg), 2 trig.
  */
-int gravity_link1_loaded_gravity(
+gravity_link1_loaded_status_t gravity_link1_loaded_gravity(
     const gravity_link1_loaded_real_t q[GRAVITY_LINK1_LOADED_N_JOINTS],
     const gravity_link1_loaded_real_t parameters[GRAVITY_LINK1_LOADED_N_PARAMETERS],
     gravity_link1_loaded_real_t out[GRAVITY_LINK1_LOADED_N_JOINTS]);
@@ -213,9 +221,9 @@ int gravity_link1_loaded_gravity(
  * @param[out]  out         [1]  [N m]    inputs: motor currents, efforts where undriven
  * @return GRAVITY_LINK1_LOADED_STATUS_OK or status bits
  *
- * Operations: 9 (6 mul, 3 add, 0 neg), 2 trig, 1 other.
+ * Operations: 9 (6 mul, 3 add, 0 neg), 2 trig, 1 other calls (sign, select and the like).
  */
-int gravity_link1_loaded_bias(
+gravity_link1_loaded_status_t gravity_link1_loaded_bias(
     const gravity_link1_loaded_real_t q[GRAVITY_LINK1_LOADED_N_JOINTS],
     const gravity_link1_loaded_real_t dq[GRAVITY_LINK1_LOADED_N_JOINTS],
     const gravity_link1_loaded_real_t parameters[GRAVITY_LINK1_LOADED_N_PARAMETERS],
@@ -231,7 +239,7 @@ int gravity_link1_loaded_bias(
  *
  * Operations: 0 (0 mul, 0 add, 0 neg).
  */
-int gravity_link1_loaded_mass_matrix(
+gravity_link1_loaded_status_t gravity_link1_loaded_mass_matrix(
     const gravity_link1_loaded_real_t q[GRAVITY_LINK1_LOADED_N_JOINTS],
     const gravity_link1_loaded_real_t parameters[GRAVITY_LINK1_LOADED_N_PARAMETERS],
     gravity_link1_loaded_real_t out[GRAVITY_LINK1_LOADED_N_JOINTS]);
@@ -246,9 +254,9 @@ int gravity_link1_loaded_mass_matrix(
  * @param[out]  out         [1]  [rad/s^2]  joint accelerations
  * @return GRAVITY_LINK1_LOADED_STATUS_OK or status bits
  *
- * Operations: 11 (7 mul, 4 add, 0 neg), 1 div, 2 trig, 1 other.
+ * Operations: 11 (7 mul, 4 add, 0 neg), 1 div, 2 trig, 1 other calls (sign, select and the like).
  */
-int gravity_link1_loaded_forward_dynamics(
+gravity_link1_loaded_status_t gravity_link1_loaded_forward_dynamics(
     const gravity_link1_loaded_real_t q[GRAVITY_LINK1_LOADED_N_JOINTS],
     const gravity_link1_loaded_real_t dq[GRAVITY_LINK1_LOADED_N_JOINTS],
     const gravity_link1_loaded_real_t input[GRAVITY_LINK1_LOADED_N_JOINTS],
@@ -267,7 +275,7 @@ int gravity_link1_loaded_forward_dynamics(
  *
  * Operations: 8 (7 mul, 1 add, 0 neg), 2 trig.
  */
-int gravity_link1_loaded_energy(
+gravity_link1_loaded_status_t gravity_link1_loaded_energy(
     const gravity_link1_loaded_real_t q[GRAVITY_LINK1_LOADED_N_JOINTS],
     const gravity_link1_loaded_real_t dq[GRAVITY_LINK1_LOADED_N_JOINTS],
     const gravity_link1_loaded_real_t parameters[GRAVITY_LINK1_LOADED_N_PARAMETERS],
@@ -284,9 +292,9 @@ int gravity_link1_loaded_energy(
  *                                                         row-major
  * @return GRAVITY_LINK1_LOADED_STATUS_OK or status bits
  *
- * Operations: 2 (2 mul, 0 add, 0 neg), 2 trig, 1 other.
+ * Operations: 2 (2 mul, 0 add, 0 neg), 2 trig, 1 other calls (sign, select and the like).
  */
-int gravity_link1_loaded_regressor(
+gravity_link1_loaded_status_t gravity_link1_loaded_regressor(
     const gravity_link1_loaded_real_t q[GRAVITY_LINK1_LOADED_N_JOINTS],
     const gravity_link1_loaded_real_t dq[GRAVITY_LINK1_LOADED_N_JOINTS],
     const gravity_link1_loaded_real_t ddq[GRAVITY_LINK1_LOADED_N_JOINTS],
@@ -302,9 +310,9 @@ int gravity_link1_loaded_regressor(
  *                                                          22, row-major
  * @return GRAVITY_LINK1_LOADED_STATUS_OK or status bits
  *
- * Operations: 6 (4 mul, 2 add, 0 neg), 2 trig, 1 other.
+ * Operations: 6 (4 mul, 2 add, 0 neg), 2 trig, 1 other calls (sign, select and the like).
  */
-int gravity_link1_loaded_regressor_standard(
+gravity_link1_loaded_status_t gravity_link1_loaded_regressor_standard(
     const gravity_link1_loaded_real_t q[GRAVITY_LINK1_LOADED_N_JOINTS],
     const gravity_link1_loaded_real_t dq[GRAVITY_LINK1_LOADED_N_JOINTS],
     const gravity_link1_loaded_real_t ddq[GRAVITY_LINK1_LOADED_N_JOINTS],
@@ -319,9 +327,9 @@ int gravity_link1_loaded_regressor_standard(
  * @param[out]  out  [5]  [N m per unit of the parameter]  structural non-zeros, row after row
  * @return GRAVITY_LINK1_LOADED_STATUS_OK or status bits
  *
- * Operations: 2 (2 mul, 0 add, 0 neg), 2 trig, 1 other.
+ * Operations: 2 (2 mul, 0 add, 0 neg), 2 trig, 1 other calls (sign, select and the like).
  */
-int gravity_link1_loaded_regressor_packed(
+gravity_link1_loaded_status_t gravity_link1_loaded_regressor_packed(
     const gravity_link1_loaded_real_t q[GRAVITY_LINK1_LOADED_N_JOINTS],
     const gravity_link1_loaded_real_t dq[GRAVITY_LINK1_LOADED_N_JOINTS],
     const gravity_link1_loaded_real_t ddq[GRAVITY_LINK1_LOADED_N_JOINTS],
@@ -338,9 +346,9 @@ int gravity_link1_loaded_regressor_packed(
  *                                                           with dM/dt - 2 C skew-symmetric; 1 x 5, row-major
  * @return GRAVITY_LINK1_LOADED_STATUS_OK or status bits
  *
- * Operations: 2 (2 mul, 0 add, 0 neg), 2 trig, 1 other.
+ * Operations: 2 (2 mul, 0 add, 0 neg), 2 trig, 1 other calls (sign, select and the like).
  */
-int gravity_link1_loaded_slotine_li_regressor(
+gravity_link1_loaded_status_t gravity_link1_loaded_slotine_li_regressor(
     const gravity_link1_loaded_real_t q[GRAVITY_LINK1_LOADED_N_JOINTS],
     const gravity_link1_loaded_real_t dq[GRAVITY_LINK1_LOADED_N_JOINTS],
     const gravity_link1_loaded_real_t dq_r[GRAVITY_LINK1_LOADED_N_JOINTS],
@@ -357,9 +365,9 @@ int gravity_link1_loaded_slotine_li_regressor(
  * @param[out]  out         [1]   [N m]      inputs: motor currents, efforts where undriven
  * @return GRAVITY_LINK1_LOADED_STATUS_OK or status bits
  *
- * Operations: 29 (17 mul, 12 add, 0 neg), 2 trig, 1 other.
+ * Operations: 29 (17 mul, 12 add, 0 neg), 2 trig, 1 other calls (sign, select and the like).
  */
-int gravity_link1_loaded_inverse_dynamics_standard(
+gravity_link1_loaded_status_t gravity_link1_loaded_inverse_dynamics_standard(
     const gravity_link1_loaded_real_t q[GRAVITY_LINK1_LOADED_N_JOINTS],
     const gravity_link1_loaded_real_t dq[GRAVITY_LINK1_LOADED_N_JOINTS],
     const gravity_link1_loaded_real_t ddq[GRAVITY_LINK1_LOADED_N_JOINTS],
@@ -376,7 +384,7 @@ int gravity_link1_loaded_inverse_dynamics_standard(
  *
  * Operations: 12 (8 mul, 4 add, 0 neg), 2 trig.
  */
-int gravity_link1_loaded_gravity_standard(
+gravity_link1_loaded_status_t gravity_link1_loaded_gravity_standard(
     const gravity_link1_loaded_real_t q[GRAVITY_LINK1_LOADED_N_JOINTS],
     const gravity_link1_loaded_real_t parameters[GRAVITY_LINK1_LOADED_N_STANDARD_PARAMETERS],
     gravity_link1_loaded_real_t out[GRAVITY_LINK1_LOADED_N_JOINTS]);
@@ -390,9 +398,9 @@ int gravity_link1_loaded_gravity_standard(
  * @param[out]  out         [1]   [N m]    inputs: motor currents, efforts where undriven
  * @return GRAVITY_LINK1_LOADED_STATUS_OK or status bits
  *
- * Operations: 21 (13 mul, 8 add, 0 neg), 2 trig, 1 other.
+ * Operations: 21 (13 mul, 8 add, 0 neg), 2 trig, 1 other calls (sign, select and the like).
  */
-int gravity_link1_loaded_bias_standard(
+gravity_link1_loaded_status_t gravity_link1_loaded_bias_standard(
     const gravity_link1_loaded_real_t q[GRAVITY_LINK1_LOADED_N_JOINTS],
     const gravity_link1_loaded_real_t dq[GRAVITY_LINK1_LOADED_N_JOINTS],
     const gravity_link1_loaded_real_t parameters[GRAVITY_LINK1_LOADED_N_STANDARD_PARAMETERS],
@@ -408,7 +416,7 @@ int gravity_link1_loaded_bias_standard(
  *
  * Operations: 6 (3 mul, 3 add, 0 neg).
  */
-int gravity_link1_loaded_mass_matrix_standard(
+gravity_link1_loaded_status_t gravity_link1_loaded_mass_matrix_standard(
     const gravity_link1_loaded_real_t q[GRAVITY_LINK1_LOADED_N_JOINTS],
     const gravity_link1_loaded_real_t parameters[GRAVITY_LINK1_LOADED_N_STANDARD_PARAMETERS],
     gravity_link1_loaded_real_t out[GRAVITY_LINK1_LOADED_N_JOINTS]);
@@ -424,9 +432,9 @@ int gravity_link1_loaded_mass_matrix_standard(
  * @param[out]  out         [1]   [rad/s^2]  joint accelerations
  * @return GRAVITY_LINK1_LOADED_STATUS_OK or status bits
  *
- * Operations: 29 (17 mul, 12 add, 0 neg), 1 div, 2 trig, 1 other.
+ * Operations: 29 (17 mul, 12 add, 0 neg), 1 div, 2 trig, 1 other calls (sign, select and the like).
  */
-int gravity_link1_loaded_forward_dynamics_standard(
+gravity_link1_loaded_status_t gravity_link1_loaded_forward_dynamics_standard(
     const gravity_link1_loaded_real_t q[GRAVITY_LINK1_LOADED_N_JOINTS],
     const gravity_link1_loaded_real_t dq[GRAVITY_LINK1_LOADED_N_JOINTS],
     const gravity_link1_loaded_real_t input[GRAVITY_LINK1_LOADED_N_JOINTS],
@@ -445,7 +453,7 @@ int gravity_link1_loaded_forward_dynamics_standard(
  *
  * Operations: 26 (19 mul, 7 add, 0 neg), 2 trig.
  */
-int gravity_link1_loaded_energy_standard(
+gravity_link1_loaded_status_t gravity_link1_loaded_energy_standard(
     const gravity_link1_loaded_real_t q[GRAVITY_LINK1_LOADED_N_JOINTS],
     const gravity_link1_loaded_real_t dq[GRAVITY_LINK1_LOADED_N_JOINTS],
     const gravity_link1_loaded_real_t parameters[GRAVITY_LINK1_LOADED_N_STANDARD_PARAMETERS],
@@ -463,7 +471,7 @@ int gravity_link1_loaded_energy_standard(
  *
  * Operations: 4 (2 mul, 0 add, 2 neg), 2 trig.
  */
-int gravity_link1_loaded_forward_kinematics(
+gravity_link1_loaded_status_t gravity_link1_loaded_forward_kinematics(
     const gravity_link1_loaded_real_t q[GRAVITY_LINK1_LOADED_N_JOINTS],
     gravity_link1_loaded_real_t out[16 * GRAVITY_LINK1_LOADED_N_LINKS]);
 
@@ -476,7 +484,7 @@ int gravity_link1_loaded_forward_kinematics(
  *
  * Operations: 2 (2 mul, 0 add, 0 neg), 2 trig.
  */
-int gravity_link1_loaded_jacobian(
+gravity_link1_loaded_status_t gravity_link1_loaded_jacobian(
     const gravity_link1_loaded_real_t q[GRAVITY_LINK1_LOADED_N_JOINTS],
     gravity_link1_loaded_real_t out[6 * GRAVITY_LINK1_LOADED_N_JOINTS]);
 
@@ -493,7 +501,7 @@ int gravity_link1_loaded_jacobian(
  *
  * Operations: 0 (0 mul, 0 add, 0 neg).
  */
-int gravity_link1_loaded_motor_from_joint(
+gravity_link1_loaded_status_t gravity_link1_loaded_motor_from_joint(
     const gravity_link1_loaded_real_t q[GRAVITY_LINK1_LOADED_N_JOINTS],
     const gravity_link1_loaded_real_t dq[GRAVITY_LINK1_LOADED_N_JOINTS],
     const gravity_link1_loaded_real_t ddq[GRAVITY_LINK1_LOADED_N_JOINTS],
@@ -514,7 +522,7 @@ int gravity_link1_loaded_motor_from_joint(
  *
  * Operations: 0 (0 mul, 0 add, 0 neg).
  */
-int gravity_link1_loaded_joint_from_motor(
+gravity_link1_loaded_status_t gravity_link1_loaded_joint_from_motor(
     const gravity_link1_loaded_real_t q_m[GRAVITY_LINK1_LOADED_N_JOINTS],
     const gravity_link1_loaded_real_t dq_m[GRAVITY_LINK1_LOADED_N_JOINTS],
     const gravity_link1_loaded_real_t ddq_m[GRAVITY_LINK1_LOADED_N_JOINTS],
@@ -525,13 +533,13 @@ int gravity_link1_loaded_joint_from_motor(
 /**
  * Joint effort per input.
  *
- * @param[in]   q    [1]  [rad]              joint coordinates; norm at most 10000
- * @param[out]  out  [1]  [(N m) per (N m)]  drive gains K
+ * @param[in]   q    [1]  [rad]          joint coordinates; norm at most 10000
+ * @param[out]  out  [1]  [N m per N m]  drive gains K
  * @return GRAVITY_LINK1_LOADED_STATUS_OK or status bits
  *
  * Operations: 0 (0 mul, 0 add, 0 neg).
  */
-int gravity_link1_loaded_drive_gain(
+gravity_link1_loaded_status_t gravity_link1_loaded_drive_gain(
     const gravity_link1_loaded_real_t q[GRAVITY_LINK1_LOADED_N_JOINTS],
     gravity_link1_loaded_real_t out[GRAVITY_LINK1_LOADED_N_JOINTS]);
 
@@ -539,19 +547,19 @@ int gravity_link1_loaded_drive_gain(
  * Inputs that give the accelerations ddq, and their derivatives; at a kink of a law, as of dry
  * friction at rest, the mean of both sides; base parameters.
  *
- * @param[in]   q             [1]  [rad]                  joint coordinates; norm at most 10000
- * @param[in]   dq            [1]  [rad/s]                joint velocities; norm at most 100000
- * @param[in]   ddq           [1]  [rad/s^2]              joint accelerations; norm at most 1e+08
- * @param[in]   parameters    [5]                         base parameters; norm at most 1e+09
- * @param[out]  input         [1]  [N m]                  inputs: motor currents, efforts where undriven
- * @param[out]  input_by_q    [1]  [(N m) per (rad)]      d input / d q
- * @param[out]  input_by_dq   [1]  [(N m) per (rad/s)]    d input / d dq
- * @param[out]  input_by_ddq  [1]  [(N m) per (rad/s^2)]  d input / d ddq
+ * @param[in]   q             [1]  [rad]                joint coordinates; norm at most 10000
+ * @param[in]   dq            [1]  [rad/s]              joint velocities; norm at most 100000
+ * @param[in]   ddq           [1]  [rad/s^2]            joint accelerations; norm at most 1e+08
+ * @param[in]   parameters    [5]                       base parameters; norm at most 1e+09
+ * @param[out]  input         [1]  [N m]                inputs: motor currents, efforts where undriven
+ * @param[out]  input_by_q    [1]  [N m per rad]        d input / d q
+ * @param[out]  input_by_dq   [1]  [N m per (rad/s)]    d input / d dq
+ * @param[out]  input_by_ddq  [1]  [N m per (rad/s^2)]  d input / d ddq
  * @return GRAVITY_LINK1_LOADED_STATUS_OK or status bits
  *
- * Operations: 14 (9 mul, 5 add, 0 neg), 2 trig, 1 other.
+ * Operations: 14 (9 mul, 5 add, 0 neg), 2 trig, 1 other calls (sign, select and the like).
  */
-int gravity_link1_loaded_inverse_dynamics_derivatives(
+gravity_link1_loaded_status_t gravity_link1_loaded_inverse_dynamics_derivatives(
     const gravity_link1_loaded_real_t q[GRAVITY_LINK1_LOADED_N_JOINTS],
     const gravity_link1_loaded_real_t dq[GRAVITY_LINK1_LOADED_N_JOINTS],
     const gravity_link1_loaded_real_t ddq[GRAVITY_LINK1_LOADED_N_JOINTS],
@@ -571,14 +579,14 @@ int gravity_link1_loaded_inverse_dynamics_derivatives(
  *                                                          norm at most 1e+09
  * @param[in]   parameters    [5]                           base parameters; norm at most 1e+09
  * @param[out]  ddq           [1]  [rad/s^2]                joint accelerations
- * @param[out]  ddq_by_q      [1]  [(rad/s^2) per (rad)]    d ddq / d q
+ * @param[out]  ddq_by_q      [1]  [(rad/s^2) per rad]      d ddq / d q
  * @param[out]  ddq_by_dq     [1]  [(rad/s^2) per (rad/s)]  d ddq / d dq
- * @param[out]  ddq_by_input  [1]  [(rad/s^2) per (N m)]    d ddq / d input
+ * @param[out]  ddq_by_input  [1]  [(rad/s^2) per N m]      d ddq / d input
  * @return GRAVITY_LINK1_LOADED_STATUS_OK or status bits
  *
- * Operations: 17 (11 mul, 5 add, 1 neg), 1 div, 2 trig, 1 other.
+ * Operations: 17 (11 mul, 5 add, 1 neg), 1 div, 2 trig, 1 other calls (sign, select and the like).
  */
-int gravity_link1_loaded_forward_dynamics_derivatives(
+gravity_link1_loaded_status_t gravity_link1_loaded_forward_dynamics_derivatives(
     const gravity_link1_loaded_real_t q[GRAVITY_LINK1_LOADED_N_JOINTS],
     const gravity_link1_loaded_real_t dq[GRAVITY_LINK1_LOADED_N_JOINTS],
     const gravity_link1_loaded_real_t input[GRAVITY_LINK1_LOADED_N_JOINTS],
@@ -592,19 +600,19 @@ int gravity_link1_loaded_forward_dynamics_derivatives(
  * Inputs that give the accelerations ddq, and their derivatives; at a kink of a law, as of dry
  * friction at rest, the mean of both sides; standard parameters.
  *
- * @param[in]   q             [1]   [rad]                  joint coordinates; norm at most 10000
- * @param[in]   dq            [1]   [rad/s]                joint velocities; norm at most 100000
- * @param[in]   ddq           [1]   [rad/s^2]              joint accelerations; norm at most 1e+08
- * @param[in]   parameters    [22]                         standard parameters; norm at most 1e+09
- * @param[out]  input         [1]   [N m]                  inputs: motor currents, efforts where undriven
- * @param[out]  input_by_q    [1]   [(N m) per (rad)]      d input / d q
- * @param[out]  input_by_dq   [1]   [(N m) per (rad/s)]    d input / d dq
- * @param[out]  input_by_ddq  [1]   [(N m) per (rad/s^2)]  d input / d ddq
+ * @param[in]   q             [1]   [rad]                joint coordinates; norm at most 10000
+ * @param[in]   dq            [1]   [rad/s]              joint velocities; norm at most 100000
+ * @param[in]   ddq           [1]   [rad/s^2]            joint accelerations; norm at most 1e+08
+ * @param[in]   parameters    [22]                       standard parameters; norm at most 1e+09
+ * @param[out]  input         [1]   [N m]                inputs: motor currents, efforts where undriven
+ * @param[out]  input_by_q    [1]   [N m per rad]        d input / d q
+ * @param[out]  input_by_dq   [1]   [N m per (rad/s)]    d input / d dq
+ * @param[out]  input_by_ddq  [1]   [N m per (rad/s^2)]  d input / d ddq
  * @return GRAVITY_LINK1_LOADED_STATUS_OK or status bits
  *
- * Operations: 48 (27 mul, 21 add, 0 neg), 2 trig, 1 other.
+ * Operations: 48 (27 mul, 21 add, 0 neg), 2 trig, 1 other calls (sign, select and the like).
  */
-int gravity_link1_loaded_inverse_dynamics_derivatives_standard(
+gravity_link1_loaded_status_t gravity_link1_loaded_inverse_dynamics_derivatives_standard(
     const gravity_link1_loaded_real_t q[GRAVITY_LINK1_LOADED_N_JOINTS],
     const gravity_link1_loaded_real_t dq[GRAVITY_LINK1_LOADED_N_JOINTS],
     const gravity_link1_loaded_real_t ddq[GRAVITY_LINK1_LOADED_N_JOINTS],
@@ -624,14 +632,14 @@ int gravity_link1_loaded_inverse_dynamics_derivatives_standard(
  *                                                           norm at most 1e+09
  * @param[in]   parameters    [22]                           standard parameters; norm at most 1e+09
  * @param[out]  ddq           [1]   [rad/s^2]                joint accelerations
- * @param[out]  ddq_by_q      [1]   [(rad/s^2) per (rad)]    d ddq / d q
+ * @param[out]  ddq_by_q      [1]   [(rad/s^2) per rad]      d ddq / d q
  * @param[out]  ddq_by_dq     [1]   [(rad/s^2) per (rad/s)]  d ddq / d dq
- * @param[out]  ddq_by_input  [1]   [(rad/s^2) per (N m)]    d ddq / d input
+ * @param[out]  ddq_by_input  [1]   [(rad/s^2) per N m]      d ddq / d input
  * @return GRAVITY_LINK1_LOADED_STATUS_OK or status bits
  *
- * Operations: 44 (26 mul, 18 add, 0 neg), 1 div, 2 trig, 1 other.
+ * Operations: 44 (26 mul, 18 add, 0 neg), 1 div, 2 trig, 1 other calls (sign, select and the like).
  */
-int gravity_link1_loaded_forward_dynamics_derivatives_standard(
+gravity_link1_loaded_status_t gravity_link1_loaded_forward_dynamics_derivatives_standard(
     const gravity_link1_loaded_real_t q[GRAVITY_LINK1_LOADED_N_JOINTS],
     const gravity_link1_loaded_real_t dq[GRAVITY_LINK1_LOADED_N_JOINTS],
     const gravity_link1_loaded_real_t input[GRAVITY_LINK1_LOADED_N_JOINTS],
@@ -640,6 +648,66 @@ int gravity_link1_loaded_forward_dynamics_derivatives_standard(
     gravity_link1_loaded_real_t ddq_by_q[GRAVITY_LINK1_LOADED_N_JOINTS],
     gravity_link1_loaded_real_t ddq_by_dq[GRAVITY_LINK1_LOADED_N_JOINTS],
     gravity_link1_loaded_real_t ddq_by_input[GRAVITY_LINK1_LOADED_N_JOINTS]);
+
+/**
+ * External efforts at the joints by the generalised momentum, with a delay of 1 / gain; state: zero at
+ * first, then what the step before gave; base parameters.
+ *
+ * @param[in]   q           [1]  [rad]       joint coordinates; norm at most 10000
+ * @param[in]   dq          [1]  [rad/s]     joint velocities; norm at most 100000
+ * @param[in]   input       [1]  [N m]       inputs: motor currents, efforts where undriven; norm at most
+ *                                           1e+09
+ * @param[in]   dt          [1]  [s]         time step; norm at most 10000
+ * @param[in]   gain        [1]  [1/s]       gains of the observer, gain dt below 1; norm at most 100000
+ * @param[in]   parameters  [5]              base parameters; norm at most 1e+09
+ * @param[in]   state       [1]  [kg m^2/s]  state of the observer: the momentum that the model expects; norm
+ *                                           at most 1e+09
+ * @param[out]  state_next  [1]  [kg m^2/s]  state after the step
+ * @param[out]  external    [1]  [N m]       efforts that act on the arm from outside
+ * @return GRAVITY_LINK1_LOADED_STATUS_OK or status bits
+ *
+ * Operations: 19 (10 mul, 8 add, 1 neg), 2 trig, 1 other calls (sign, select and the like).
+ */
+gravity_link1_loaded_status_t gravity_link1_loaded_momentum_observer_step(
+    const gravity_link1_loaded_real_t q[GRAVITY_LINK1_LOADED_N_JOINTS],
+    const gravity_link1_loaded_real_t dq[GRAVITY_LINK1_LOADED_N_JOINTS],
+    const gravity_link1_loaded_real_t input[GRAVITY_LINK1_LOADED_N_JOINTS],
+    const gravity_link1_loaded_real_t dt[1],
+    const gravity_link1_loaded_real_t gain[GRAVITY_LINK1_LOADED_N_JOINTS],
+    const gravity_link1_loaded_real_t parameters[GRAVITY_LINK1_LOADED_N_PARAMETERS],
+    const gravity_link1_loaded_real_t state[GRAVITY_LINK1_LOADED_N_OBSERVER_STATES],
+    gravity_link1_loaded_real_t state_next[GRAVITY_LINK1_LOADED_N_OBSERVER_STATES],
+    gravity_link1_loaded_real_t external[GRAVITY_LINK1_LOADED_N_JOINTS]);
+
+/**
+ * External efforts at the joints by the generalised momentum, with a delay of 1 / gain; state: zero at
+ * first, then what the step before gave; standard parameters.
+ *
+ * @param[in]   q           [1]   [rad]       joint coordinates; norm at most 10000
+ * @param[in]   dq          [1]   [rad/s]     joint velocities; norm at most 100000
+ * @param[in]   input       [1]   [N m]       inputs: motor currents, efforts where undriven; norm at most
+ *                                            1e+09
+ * @param[in]   dt          [1]   [s]         time step; norm at most 10000
+ * @param[in]   gain        [1]   [1/s]       gains of the observer, gain dt below 1; norm at most 100000
+ * @param[in]   parameters  [22]              standard parameters; norm at most 1e+09
+ * @param[in]   state       [1]   [kg m^2/s]  state of the observer: the momentum that the model expects; norm
+ *                                            at most 1e+09
+ * @param[out]  state_next  [1]   [kg m^2/s]  state after the step
+ * @param[out]  external    [1]   [N m]       efforts that act on the arm from outside
+ * @return GRAVITY_LINK1_LOADED_STATUS_OK or status bits
+ *
+ * Operations: 36 (20 mul, 15 add, 1 neg), 2 trig, 1 other calls (sign, select and the like).
+ */
+gravity_link1_loaded_status_t gravity_link1_loaded_momentum_observer_step_standard(
+    const gravity_link1_loaded_real_t q[GRAVITY_LINK1_LOADED_N_JOINTS],
+    const gravity_link1_loaded_real_t dq[GRAVITY_LINK1_LOADED_N_JOINTS],
+    const gravity_link1_loaded_real_t input[GRAVITY_LINK1_LOADED_N_JOINTS],
+    const gravity_link1_loaded_real_t dt[1],
+    const gravity_link1_loaded_real_t gain[GRAVITY_LINK1_LOADED_N_JOINTS],
+    const gravity_link1_loaded_real_t parameters[GRAVITY_LINK1_LOADED_N_STANDARD_PARAMETERS],
+    const gravity_link1_loaded_real_t state[GRAVITY_LINK1_LOADED_N_OBSERVER_STATES],
+    gravity_link1_loaded_real_t state_next[GRAVITY_LINK1_LOADED_N_OBSERVER_STATES],
+    gravity_link1_loaded_real_t external[GRAVITY_LINK1_LOADED_N_JOINTS]);
 
 #ifdef __cplusplus
 }

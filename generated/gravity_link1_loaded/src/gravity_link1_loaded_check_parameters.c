@@ -8,16 +8,16 @@
  */
 #include "gravity_link1_loaded_private.h"
 
-#if GRAVITY_LINK1_LOADED_GENERATION != 0xFB2F919BUL
+#if GRAVITY_LINK1_LOADED_GENERATION != 0x53FE3FFFUL
 #error "gravity_link1_loaded.h and gravity_link1_loaded_check_parameters.c are of different generations: generate the arm again"
 #endif
 
-int gravity_link1_loaded_check_parameters(const gravity_link1_loaded_real_t parameters[GRAVITY_LINK1_LOADED_N_PARAMETERS])
+gravity_link1_loaded_status_t gravity_link1_loaded_check_parameters(const gravity_link1_loaded_real_t parameters[GRAVITY_LINK1_LOADED_N_PARAMETERS])
 {
     return gravity_link1_loaded_within(parameters, 5, GRAVITY_LINK1_LOADED_C(1.0e18)) ? GRAVITY_LINK1_LOADED_STATUS_OK : GRAVITY_LINK1_LOADED_STATUS_INPUT;
 }
 
-int gravity_link1_loaded_check_parameters_standard(const gravity_link1_loaded_real_t parameters[GRAVITY_LINK1_LOADED_N_STANDARD_PARAMETERS])
+gravity_link1_loaded_status_t gravity_link1_loaded_check_parameters_standard(const gravity_link1_loaded_real_t parameters[GRAVITY_LINK1_LOADED_N_STANDARD_PARAMETERS])
 {
     return gravity_link1_loaded_within(parameters, 22, GRAVITY_LINK1_LOADED_C(1.0e18)) ? GRAVITY_LINK1_LOADED_STATUS_OK : GRAVITY_LINK1_LOADED_STATUS_INPUT;
 }

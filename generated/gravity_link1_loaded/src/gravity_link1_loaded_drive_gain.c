@@ -8,8 +8,8 @@
  *
  * Operations: 0 (0 mul, 0 add, 0 neg).
  *
- * @param[in]   q    [1]  [rad]              joint coordinates; norm at most 10000
- * @param[out]  out  [1]  [(N m) per (N m)]  drive gains K
+ * @param[in]   q    [1]  [rad]          joint coordinates; norm at most 10000
+ * @param[out]  out  [1]  [N m per N m]  drive gains K
  *
  * Coordinates:
  *
@@ -17,15 +17,15 @@
  */
 #include "gravity_link1_loaded_private.h"
 
-#if GRAVITY_LINK1_LOADED_GENERATION != 0xFB2F919BUL
+#if GRAVITY_LINK1_LOADED_GENERATION != 0x53FE3FFFUL
 #error "gravity_link1_loaded.h and gravity_link1_loaded_drive_gain.c are of different generations: generate the arm again"
 #endif
 
-int gravity_link1_loaded_drive_gain(
+gravity_link1_loaded_status_t gravity_link1_loaded_drive_gain(
     const gravity_link1_loaded_real_t q[GRAVITY_LINK1_LOADED_N_JOINTS],
     gravity_link1_loaded_real_t out[GRAVITY_LINK1_LOADED_N_JOINTS])
 {
-    int status = GRAVITY_LINK1_LOADED_STATUS_OK;
+    gravity_link1_loaded_status_t status = GRAVITY_LINK1_LOADED_STATUS_OK;
 
     if (!gravity_link1_loaded_within_joints(q, GRAVITY_LINK1_LOADED_C(1.0e8))) {
         status |= GRAVITY_LINK1_LOADED_STATUS_INPUT;

@@ -28,11 +28,11 @@
  */
 #include "gravity_link1_loaded_private.h"
 
-#if GRAVITY_LINK1_LOADED_GENERATION != 0xFB2F919BUL
+#if GRAVITY_LINK1_LOADED_GENERATION != 0x53FE3FFFUL
 #error "gravity_link1_loaded.h and gravity_link1_loaded_energy.c are of different generations: generate the arm again"
 #endif
 
-int gravity_link1_loaded_energy(
+gravity_link1_loaded_status_t gravity_link1_loaded_energy(
     const gravity_link1_loaded_real_t q[GRAVITY_LINK1_LOADED_N_JOINTS],
     const gravity_link1_loaded_real_t dq[GRAVITY_LINK1_LOADED_N_JOINTS],
     const gravity_link1_loaded_real_t parameters[GRAVITY_LINK1_LOADED_N_PARAMETERS],
@@ -40,7 +40,7 @@ int gravity_link1_loaded_energy(
     gravity_link1_loaded_real_t potential[1])
 {
     enum { ZZ1R = 0, MX1R, MY1R, FV1, FC1 };
-    int status = GRAVITY_LINK1_LOADED_STATUS_OK;
+    gravity_link1_loaded_status_t status = GRAVITY_LINK1_LOADED_STATUS_OK;
 
     if (!gravity_link1_loaded_within_joints(q, GRAVITY_LINK1_LOADED_C(1.0e8))
         || !gravity_link1_loaded_within_joints(dq, GRAVITY_LINK1_LOADED_C(1.0e10))

@@ -45,11 +45,11 @@
  */
 #include "gravity_link1_loaded_private.h"
 
-#if GRAVITY_LINK1_LOADED_GENERATION != 0xFB2F919BUL
+#if GRAVITY_LINK1_LOADED_GENERATION != 0x53FE3FFFUL
 #error "gravity_link1_loaded.h and gravity_link1_loaded_energy_standard.c are of different generations: generate the arm again"
 #endif
 
-int gravity_link1_loaded_energy_standard(
+gravity_link1_loaded_status_t gravity_link1_loaded_energy_standard(
     const gravity_link1_loaded_real_t q[GRAVITY_LINK1_LOADED_N_JOINTS],
     const gravity_link1_loaded_real_t dq[GRAVITY_LINK1_LOADED_N_JOINTS],
     const gravity_link1_loaded_real_t parameters[GRAVITY_LINK1_LOADED_N_STANDARD_PARAMETERS],
@@ -58,7 +58,7 @@ int gravity_link1_loaded_energy_standard(
 {
     enum { XX1 = 0, XY1, XZ1, YY1, YZ1, ZZ1, MX1, MY1, MZ1, M1, XX2, XY2, XZ2, YY2, YZ2, ZZ2, MX2, MY2, MZ2,
         M2, FV1, FC1 };
-    int status = GRAVITY_LINK1_LOADED_STATUS_OK;
+    gravity_link1_loaded_status_t status = GRAVITY_LINK1_LOADED_STATUS_OK;
 
     if (!gravity_link1_loaded_within_joints(q, GRAVITY_LINK1_LOADED_C(1.0e8))
         || !gravity_link1_loaded_within_joints(dq, GRAVITY_LINK1_LOADED_C(1.0e10))
@@ -73,13 +73,14 @@ int gravity_link1_loaded_energy_standard(
 
     gravity_link1_loaded_real_t t5, t3;
     GRAVITY_LINK1_LOADED_SINCOS(q[0], &t5, &t3);
+    /* link j2: velocity of its origin */
     const gravity_link1_loaded_real_t t0 = GRAVITY_LINK1_LOADED_C(0.538534) * dq[0];
     const gravity_link1_loaded_real_t t1 = GRAVITY_LINK1_LOADED_C(0.5) * (dq[0] * (dq[0] * parameters[ZZ2])
         + parameters[M2] * (t0 * t0));
     const gravity_link1_loaded_real_t t2 = GRAVITY_LINK1_LOADED_C(0.5) * (dq[0] * (dq[0] * parameters[ZZ1]))
         + t1 + parameters[MX2] * (dq[0] * t0);
     kinetic[0] = t2;
-    const gravity_link1_loaded_real_t t4 = GRAVITY_LINK1_LOADED_C(-9.81) * t3;
+    const gravity_link1_loaded_real_t t4 = GRAVITY_LINK1_LOADED_C(-9.81) * t3; /* link j1: motion */
     const gravity_link1_loaded_real_t t6 = GRAVITY_LINK1_LOADED_C(9.81) * t5;
     const gravity_link1_loaded_real_t t7 = t4 * parameters[MX2] + t6 * parameters[MY2]
         + parameters[M2] * (GRAVITY_LINK1_LOADED_C(-5.28301854) * t3);

@@ -6,7 +6,7 @@
  * Arm gravity_link1_loaded, description 35cb3f0e339eb026.
  * SPDX-License-Identifier: 0BSD
  *
- * Operations: 11 (7 mul, 4 add, 0 neg), 1 div, 2 trig, 1 other.
+ * Operations: 11 (7 mul, 4 add, 0 neg), 1 div, 2 trig, 1 other calls (sign, select and the like).
  *
  * @param[in]   q           [1]  [rad]      joint coordinates; norm at most 10000
  * @param[in]   dq          [1]  [rad/s]    joint velocities; norm at most 100000
@@ -28,11 +28,11 @@
  */
 #include "gravity_link1_loaded_private.h"
 
-#if GRAVITY_LINK1_LOADED_GENERATION != 0xFB2F919BUL
+#if GRAVITY_LINK1_LOADED_GENERATION != 0x53FE3FFFUL
 #error "gravity_link1_loaded.h and gravity_link1_loaded_forward_dynamics.c are of different generations: generate the arm again"
 #endif
 
-int gravity_link1_loaded_forward_dynamics(
+gravity_link1_loaded_status_t gravity_link1_loaded_forward_dynamics(
     const gravity_link1_loaded_real_t q[GRAVITY_LINK1_LOADED_N_JOINTS],
     const gravity_link1_loaded_real_t dq[GRAVITY_LINK1_LOADED_N_JOINTS],
     const gravity_link1_loaded_real_t input[GRAVITY_LINK1_LOADED_N_JOINTS],
@@ -40,7 +40,7 @@ int gravity_link1_loaded_forward_dynamics(
     gravity_link1_loaded_real_t out[GRAVITY_LINK1_LOADED_N_JOINTS])
 {
     enum { ZZ1R = 0, MX1R, MY1R, FV1, FC1 };
-    int status = GRAVITY_LINK1_LOADED_STATUS_OK;
+    gravity_link1_loaded_status_t status = GRAVITY_LINK1_LOADED_STATUS_OK;
 
     if (!gravity_link1_loaded_within_joints(q, GRAVITY_LINK1_LOADED_C(1.0e8))
         || !gravity_link1_loaded_within_joints(dq, GRAVITY_LINK1_LOADED_C(1.0e10))
@@ -59,7 +59,7 @@ int gravity_link1_loaded_forward_dynamics(
         gravity_link1_loaded_zero(out, 1);
         return GRAVITY_LINK1_LOADED_STATUS_PIVOT;
     }
-    const gravity_link1_loaded_real_t t0 = gravity_link1_loaded_sign(dq[0]);
+    const gravity_link1_loaded_real_t t0 = gravity_link1_loaded_sign(dq[0]); /* joint j1: coulomb_friction */
     const gravity_link1_loaded_real_t t3 = parameters[MX1R] * (GRAVITY_LINK1_LOADED_C(-9.81) * t1)
         + parameters[MY1R] * (GRAVITY_LINK1_LOADED_C(-9.81) * t2) - (parameters[FV1] * dq[0]
         + parameters[FC1] * t0);

@@ -7,7 +7,7 @@
  * Arm gravity_link1_loaded, description 35cb3f0e339eb026.
  * SPDX-License-Identifier: 0BSD
  *
- * Operations: 44 (26 mul, 18 add, 0 neg), 1 div, 2 trig, 1 other.
+ * Operations: 44 (26 mul, 18 add, 0 neg), 1 div, 2 trig, 1 other calls (sign, select and the like).
  *
  * @param[in]   q             [1]   [rad]                    joint coordinates; norm at most 10000
  * @param[in]   dq            [1]   [rad/s]                  joint velocities; norm at most 100000
@@ -15,9 +15,9 @@
  *                                                           norm at most 1e+09
  * @param[in]   parameters    [22]                           standard parameters; norm at most 1e+09
  * @param[out]  ddq           [1]   [rad/s^2]                joint accelerations
- * @param[out]  ddq_by_q      [1]   [(rad/s^2) per (rad)]    d ddq / d q
+ * @param[out]  ddq_by_q      [1]   [(rad/s^2) per rad]      d ddq / d q
  * @param[out]  ddq_by_dq     [1]   [(rad/s^2) per (rad/s)]  d ddq / d dq
- * @param[out]  ddq_by_input  [1]   [(rad/s^2) per (N m)]    d ddq / d input
+ * @param[out]  ddq_by_input  [1]   [(rad/s^2) per N m]      d ddq / d input
  *
  * Coordinates:
  *
@@ -50,11 +50,11 @@
  */
 #include "gravity_link1_loaded_private.h"
 
-#if GRAVITY_LINK1_LOADED_GENERATION != 0xFB2F919BUL
+#if GRAVITY_LINK1_LOADED_GENERATION != 0x53FE3FFFUL
 #error "gravity_link1_loaded.h and gravity_link1_loaded_forward_dynamics_derivatives_standard.c are of different generations: generate the arm again"
 #endif
 
-int gravity_link1_loaded_forward_dynamics_derivatives_standard(
+gravity_link1_loaded_status_t gravity_link1_loaded_forward_dynamics_derivatives_standard(
     const gravity_link1_loaded_real_t q[GRAVITY_LINK1_LOADED_N_JOINTS],
     const gravity_link1_loaded_real_t dq[GRAVITY_LINK1_LOADED_N_JOINTS],
     const gravity_link1_loaded_real_t input[GRAVITY_LINK1_LOADED_N_JOINTS],
@@ -66,7 +66,7 @@ int gravity_link1_loaded_forward_dynamics_derivatives_standard(
 {
     enum { XX1 = 0, XY1, XZ1, YY1, YZ1, ZZ1, MX1, MY1, MZ1, M1, XX2, XY2, XZ2, YY2, YZ2, ZZ2, MX2, MY2, MZ2,
         M2, FV1, FC1 };
-    int status = GRAVITY_LINK1_LOADED_STATUS_OK;
+    gravity_link1_loaded_status_t status = GRAVITY_LINK1_LOADED_STATUS_OK;
 
     if (!gravity_link1_loaded_within_joints(q, GRAVITY_LINK1_LOADED_C(1.0e8))
         || !gravity_link1_loaded_within_joints(dq, GRAVITY_LINK1_LOADED_C(1.0e10))
@@ -84,6 +84,7 @@ int gravity_link1_loaded_forward_dynamics_derivatives_standard(
 
     gravity_link1_loaded_real_t t5, t2;
     GRAVITY_LINK1_LOADED_SINCOS(q[0], &t5, &t2);
+    /* link j2: inertia of it and all beyond */
     const gravity_link1_loaded_real_t t0 = GRAVITY_LINK1_LOADED_C(0.538534) * parameters[M2];
     const gravity_link1_loaded_real_t t1 = gravity_link1_loaded_bounded(parameters[ZZ1] + (parameters[ZZ2]
         + GRAVITY_LINK1_LOADED_C(0.538534) * (t0 + GRAVITY_LINK1_LOADED_C(2.0) * parameters[MX2])));
@@ -94,17 +95,19 @@ int gravity_link1_loaded_forward_dynamics_derivatives_standard(
         gravity_link1_loaded_zero(ddq_by_input, 1);
         return GRAVITY_LINK1_LOADED_STATUS_PIVOT;
     }
-    const gravity_link1_loaded_real_t t3 = GRAVITY_LINK1_LOADED_C(-9.81) * t2;
+    const gravity_link1_loaded_real_t t3 = GRAVITY_LINK1_LOADED_C(-9.81) * t2; /* link j1: motion */
     const gravity_link1_loaded_real_t t4 = dq[0] * dq[0];
     const gravity_link1_loaded_real_t t6 = GRAVITY_LINK1_LOADED_C(-9.81) * t5;
+    /* link j2: what it passes on */
     const gravity_link1_loaded_real_t t7 = t6 * parameters[MX2] + (t3
         + GRAVITY_LINK1_LOADED_C(-0.538534) * t4) * parameters[MY2]
         + GRAVITY_LINK1_LOADED_C(0.538534) * (t6 * parameters[M2] + t4 * parameters[MY2]);
-    const gravity_link1_loaded_real_t t8 = gravity_link1_loaded_sign(dq[0]);
+    const gravity_link1_loaded_real_t t8 = gravity_link1_loaded_sign(dq[0]); /* joint j1: coulomb_friction */
     const gravity_link1_loaded_real_t t9 = t6 * parameters[MX1] + t3 * parameters[MY1] + t7
         - (dq[0] * parameters[FV1] + t8 * parameters[FC1]);
     const gravity_link1_loaded_real_t t10 = GRAVITY_LINK1_LOADED_C(1.0) / t1;
     ddq[0] = (input[0] + t9) * t10;
+    /* link j1: derivatives */
     const gravity_link1_loaded_real_t t11 = t3 * (parameters[MX1] + (parameters[MX2] + t0))
         - t6 * (parameters[MY1] + parameters[MY2]);
     ddq_by_q[0] = t10 * t11;

@@ -6,7 +6,7 @@
  * Arm gravity_link1_loaded, description 35cb3f0e339eb026.
  * SPDX-License-Identifier: 0BSD
  *
- * Operations: 29 (17 mul, 12 add, 0 neg), 1 div, 2 trig, 1 other.
+ * Operations: 29 (17 mul, 12 add, 0 neg), 1 div, 2 trig, 1 other calls (sign, select and the like).
  *
  * @param[in]   q           [1]   [rad]      joint coordinates; norm at most 10000
  * @param[in]   dq          [1]   [rad/s]    joint velocities; norm at most 100000
@@ -46,11 +46,11 @@
  */
 #include "gravity_link1_loaded_private.h"
 
-#if GRAVITY_LINK1_LOADED_GENERATION != 0xFB2F919BUL
+#if GRAVITY_LINK1_LOADED_GENERATION != 0x53FE3FFFUL
 #error "gravity_link1_loaded.h and gravity_link1_loaded_forward_dynamics_standard.c are of different generations: generate the arm again"
 #endif
 
-int gravity_link1_loaded_forward_dynamics_standard(
+gravity_link1_loaded_status_t gravity_link1_loaded_forward_dynamics_standard(
     const gravity_link1_loaded_real_t q[GRAVITY_LINK1_LOADED_N_JOINTS],
     const gravity_link1_loaded_real_t dq[GRAVITY_LINK1_LOADED_N_JOINTS],
     const gravity_link1_loaded_real_t input[GRAVITY_LINK1_LOADED_N_JOINTS],
@@ -59,7 +59,7 @@ int gravity_link1_loaded_forward_dynamics_standard(
 {
     enum { XX1 = 0, XY1, XZ1, YY1, YZ1, ZZ1, MX1, MY1, MZ1, M1, XX2, XY2, XZ2, YY2, YZ2, ZZ2, MX2, MY2, MZ2,
         M2, FV1, FC1 };
-    int status = GRAVITY_LINK1_LOADED_STATUS_OK;
+    gravity_link1_loaded_status_t status = GRAVITY_LINK1_LOADED_STATUS_OK;
 
     if (!gravity_link1_loaded_within_joints(q, GRAVITY_LINK1_LOADED_C(1.0e8))
         || !gravity_link1_loaded_within_joints(dq, GRAVITY_LINK1_LOADED_C(1.0e10))
@@ -74,6 +74,7 @@ int gravity_link1_loaded_forward_dynamics_standard(
 
     gravity_link1_loaded_real_t t4, t1;
     GRAVITY_LINK1_LOADED_SINCOS(q[0], &t4, &t1);
+    /* link j2: inertia of it and all beyond */
     const gravity_link1_loaded_real_t t0 = gravity_link1_loaded_bounded(parameters[ZZ1] + (parameters[ZZ2]
         + GRAVITY_LINK1_LOADED_C(0.538534) * (GRAVITY_LINK1_LOADED_C(0.538534) * parameters[M2]
         + GRAVITY_LINK1_LOADED_C(2.0) * parameters[MX2])));
@@ -81,13 +82,14 @@ int gravity_link1_loaded_forward_dynamics_standard(
         gravity_link1_loaded_zero(out, 1);
         return GRAVITY_LINK1_LOADED_STATUS_PIVOT;
     }
-    const gravity_link1_loaded_real_t t2 = GRAVITY_LINK1_LOADED_C(-9.81) * t1;
+    const gravity_link1_loaded_real_t t2 = GRAVITY_LINK1_LOADED_C(-9.81) * t1; /* link j1: motion */
     const gravity_link1_loaded_real_t t3 = dq[0] * dq[0];
     const gravity_link1_loaded_real_t t5 = GRAVITY_LINK1_LOADED_C(-9.81) * t4;
+    /* link j2: what it passes on */
     const gravity_link1_loaded_real_t t6 = t5 * parameters[MX2] + (t2
         + GRAVITY_LINK1_LOADED_C(-0.538534) * t3) * parameters[MY2]
         + GRAVITY_LINK1_LOADED_C(0.538534) * (t5 * parameters[M2] + t3 * parameters[MY2]);
-    const gravity_link1_loaded_real_t t7 = gravity_link1_loaded_sign(dq[0]);
+    const gravity_link1_loaded_real_t t7 = gravity_link1_loaded_sign(dq[0]); /* joint j1: coulomb_friction */
     const gravity_link1_loaded_real_t t8 = t5 * parameters[MX1] + t2 * parameters[MY1] + t6
         - (dq[0] * parameters[FV1] + t7 * parameters[FC1]);
     const gravity_link1_loaded_real_t t9 = GRAVITY_LINK1_LOADED_C(1.0) / t0;

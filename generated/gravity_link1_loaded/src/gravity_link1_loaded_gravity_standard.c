@@ -43,18 +43,18 @@
  */
 #include "gravity_link1_loaded_private.h"
 
-#if GRAVITY_LINK1_LOADED_GENERATION != 0xFB2F919BUL
+#if GRAVITY_LINK1_LOADED_GENERATION != 0x53FE3FFFUL
 #error "gravity_link1_loaded.h and gravity_link1_loaded_gravity_standard.c are of different generations: generate the arm again"
 #endif
 
-int gravity_link1_loaded_gravity_standard(
+gravity_link1_loaded_status_t gravity_link1_loaded_gravity_standard(
     const gravity_link1_loaded_real_t q[GRAVITY_LINK1_LOADED_N_JOINTS],
     const gravity_link1_loaded_real_t parameters[GRAVITY_LINK1_LOADED_N_STANDARD_PARAMETERS],
     gravity_link1_loaded_real_t out[GRAVITY_LINK1_LOADED_N_JOINTS])
 {
     enum { XX1 = 0, XY1, XZ1, YY1, YZ1, ZZ1, MX1, MY1, MZ1, M1, XX2, XY2, XZ2, YY2, YZ2, ZZ2, MX2, MY2, MZ2,
         M2, FV1, FC1 };
-    int status = GRAVITY_LINK1_LOADED_STATUS_OK;
+    gravity_link1_loaded_status_t status = GRAVITY_LINK1_LOADED_STATUS_OK;
 
     if (!gravity_link1_loaded_within_joints(q, GRAVITY_LINK1_LOADED_C(1.0e8))
         || !GRAVITY_LINK1_LOADED_PARAMETERS_USABLE(gravity_link1_loaded_within(parameters, 22, GRAVITY_LINK1_LOADED_C(1.0e18)))) {
@@ -67,8 +67,9 @@ int gravity_link1_loaded_gravity_standard(
 
     gravity_link1_loaded_real_t t0, t2;
     GRAVITY_LINK1_LOADED_SINCOS(q[0], &t0, &t2);
-    const gravity_link1_loaded_real_t t1 = GRAVITY_LINK1_LOADED_C(9.81) * t0;
+    const gravity_link1_loaded_real_t t1 = GRAVITY_LINK1_LOADED_C(9.81) * t0; /* link j1: motion */
     const gravity_link1_loaded_real_t t3 = GRAVITY_LINK1_LOADED_C(9.81) * t2;
+    /* link j2: what it passes on */
     const gravity_link1_loaded_real_t t4 = t1 * parameters[MX2] + t3 * parameters[MY2]
         + GRAVITY_LINK1_LOADED_C(0.538534) * (t1 * parameters[M2]);
     out[0] = t1 * parameters[MX1] + t3 * parameters[MY1] + t4;

@@ -7,16 +7,16 @@
  * Arm gravity_link1_loaded, description 35cb3f0e339eb026.
  * SPDX-License-Identifier: 0BSD
  *
- * Operations: 48 (27 mul, 21 add, 0 neg), 2 trig, 1 other.
+ * Operations: 48 (27 mul, 21 add, 0 neg), 2 trig, 1 other calls (sign, select and the like).
  *
- * @param[in]   q             [1]   [rad]                  joint coordinates; norm at most 10000
- * @param[in]   dq            [1]   [rad/s]                joint velocities; norm at most 100000
- * @param[in]   ddq           [1]   [rad/s^2]              joint accelerations; norm at most 1e+08
- * @param[in]   parameters    [22]                         standard parameters; norm at most 1e+09
- * @param[out]  input         [1]   [N m]                  inputs: motor currents, efforts where undriven
- * @param[out]  input_by_q    [1]   [(N m) per (rad)]      d input / d q
- * @param[out]  input_by_dq   [1]   [(N m) per (rad/s)]    d input / d dq
- * @param[out]  input_by_ddq  [1]   [(N m) per (rad/s^2)]  d input / d ddq
+ * @param[in]   q             [1]   [rad]                joint coordinates; norm at most 10000
+ * @param[in]   dq            [1]   [rad/s]              joint velocities; norm at most 100000
+ * @param[in]   ddq           [1]   [rad/s^2]            joint accelerations; norm at most 1e+08
+ * @param[in]   parameters    [22]                       standard parameters; norm at most 1e+09
+ * @param[out]  input         [1]   [N m]                inputs: motor currents, efforts where undriven
+ * @param[out]  input_by_q    [1]   [N m per rad]        d input / d q
+ * @param[out]  input_by_dq   [1]   [N m per (rad/s)]    d input / d dq
+ * @param[out]  input_by_ddq  [1]   [N m per (rad/s^2)]  d input / d ddq
  *
  * Coordinates:
  *
@@ -49,11 +49,11 @@
  */
 #include "gravity_link1_loaded_private.h"
 
-#if GRAVITY_LINK1_LOADED_GENERATION != 0xFB2F919BUL
+#if GRAVITY_LINK1_LOADED_GENERATION != 0x53FE3FFFUL
 #error "gravity_link1_loaded.h and gravity_link1_loaded_inverse_dynamics_derivatives_standard.c are of different generations: generate the arm again"
 #endif
 
-int gravity_link1_loaded_inverse_dynamics_derivatives_standard(
+gravity_link1_loaded_status_t gravity_link1_loaded_inverse_dynamics_derivatives_standard(
     const gravity_link1_loaded_real_t q[GRAVITY_LINK1_LOADED_N_JOINTS],
     const gravity_link1_loaded_real_t dq[GRAVITY_LINK1_LOADED_N_JOINTS],
     const gravity_link1_loaded_real_t ddq[GRAVITY_LINK1_LOADED_N_JOINTS],
@@ -65,7 +65,7 @@ int gravity_link1_loaded_inverse_dynamics_derivatives_standard(
 {
     enum { XX1 = 0, XY1, XZ1, YY1, YZ1, ZZ1, MX1, MY1, MZ1, M1, XX2, XY2, XZ2, YY2, YZ2, ZZ2, MX2, MY2, MZ2,
         M2, FV1, FC1 };
-    int status = GRAVITY_LINK1_LOADED_STATUS_OK;
+    gravity_link1_loaded_status_t status = GRAVITY_LINK1_LOADED_STATUS_OK;
 
     if (!gravity_link1_loaded_within_joints(q, GRAVITY_LINK1_LOADED_C(1.0e8))
         || !gravity_link1_loaded_within_joints(dq, GRAVITY_LINK1_LOADED_C(1.0e10))
@@ -83,19 +83,24 @@ int gravity_link1_loaded_inverse_dynamics_derivatives_standard(
 
     gravity_link1_loaded_real_t t3, t0;
     GRAVITY_LINK1_LOADED_SINCOS(q[0], &t3, &t0);
-    const gravity_link1_loaded_real_t t1 = GRAVITY_LINK1_LOADED_C(9.81) * t0;
+    const gravity_link1_loaded_real_t t1 = GRAVITY_LINK1_LOADED_C(9.81) * t0; /* link j1: motion */
     const gravity_link1_loaded_real_t t2 = dq[0] * dq[0];
     const gravity_link1_loaded_real_t t4 = GRAVITY_LINK1_LOADED_C(9.81) * t3;
+    /* link j2: motion */
     const gravity_link1_loaded_real_t t5 = t4 + GRAVITY_LINK1_LOADED_C(0.538534) * ddq[0];
+    /* link j2: force and moment */
     const gravity_link1_loaded_real_t t6 = ddq[0] * parameters[ZZ2] + ((t1
         + GRAVITY_LINK1_LOADED_C(0.538534) * t2) * parameters[MY2] + t5 * parameters[MX2]);
+    /* link j2: what it passes on */
     const gravity_link1_loaded_real_t t7 = GRAVITY_LINK1_LOADED_C(0.538534) * (t5 * parameters[M2]
         + (ddq[0] * parameters[MX2] - t2 * parameters[MY2]));
     const gravity_link1_loaded_real_t t8 = t4 * parameters[MX1] + t1 * parameters[MY1]
         + ddq[0] * parameters[ZZ1] + (t6 + t7);
-    const gravity_link1_loaded_real_t t9 = gravity_link1_loaded_sign(dq[0]);
+    const gravity_link1_loaded_real_t t9 = gravity_link1_loaded_sign(dq[0]); /* joint j1: coulomb_friction */
     input[0] = dq[0] * parameters[FV1] + t9 * parameters[FC1] + t8;
+    /* link j2: inertia of it and all beyond */
     const gravity_link1_loaded_real_t t10 = GRAVITY_LINK1_LOADED_C(0.538534) * parameters[M2];
+    /* link j1: derivatives */
     const gravity_link1_loaded_real_t t11 = t1 * (parameters[MX1] + (parameters[MX2] + t10))
         - t4 * (parameters[MY1] + parameters[MY2]);
     input_by_q[0] = t11;

@@ -21,11 +21,11 @@
  */
 #include "gravity_link1_loaded_private.h"
 
-#if GRAVITY_LINK1_LOADED_GENERATION != 0xFB2F919BUL
+#if GRAVITY_LINK1_LOADED_GENERATION != 0x53FE3FFFUL
 #error "gravity_link1_loaded.h and gravity_link1_loaded_joint_from_motor.c are of different generations: generate the arm again"
 #endif
 
-int gravity_link1_loaded_joint_from_motor(
+gravity_link1_loaded_status_t gravity_link1_loaded_joint_from_motor(
     const gravity_link1_loaded_real_t q_m[GRAVITY_LINK1_LOADED_N_JOINTS],
     const gravity_link1_loaded_real_t dq_m[GRAVITY_LINK1_LOADED_N_JOINTS],
     const gravity_link1_loaded_real_t ddq_m[GRAVITY_LINK1_LOADED_N_JOINTS],
@@ -33,7 +33,7 @@ int gravity_link1_loaded_joint_from_motor(
     gravity_link1_loaded_real_t dq[GRAVITY_LINK1_LOADED_N_JOINTS],
     gravity_link1_loaded_real_t ddq[GRAVITY_LINK1_LOADED_N_JOINTS])
 {
-    int status = GRAVITY_LINK1_LOADED_STATUS_OK;
+    gravity_link1_loaded_status_t status = GRAVITY_LINK1_LOADED_STATUS_OK;
 
     if (!gravity_link1_loaded_within_joints(q_m, GRAVITY_LINK1_LOADED_C(1.0e18))
         || !gravity_link1_loaded_within_joints(dq_m, GRAVITY_LINK1_LOADED_C(1.0e18))

@@ -26,17 +26,17 @@
  */
 #include "gravity_link1_loaded_private.h"
 
-#if GRAVITY_LINK1_LOADED_GENERATION != 0xFB2F919BUL
+#if GRAVITY_LINK1_LOADED_GENERATION != 0x53FE3FFFUL
 #error "gravity_link1_loaded.h and gravity_link1_loaded_mass_matrix.c are of different generations: generate the arm again"
 #endif
 
-int gravity_link1_loaded_mass_matrix(
+gravity_link1_loaded_status_t gravity_link1_loaded_mass_matrix(
     const gravity_link1_loaded_real_t q[GRAVITY_LINK1_LOADED_N_JOINTS],
     const gravity_link1_loaded_real_t parameters[GRAVITY_LINK1_LOADED_N_PARAMETERS],
     gravity_link1_loaded_real_t out[GRAVITY_LINK1_LOADED_N_JOINTS])
 {
     enum { ZZ1R = 0, MX1R, MY1R, FV1, FC1 };
-    int status = GRAVITY_LINK1_LOADED_STATUS_OK;
+    gravity_link1_loaded_status_t status = GRAVITY_LINK1_LOADED_STATUS_OK;
 
     if (!gravity_link1_loaded_within_joints(q, GRAVITY_LINK1_LOADED_C(1.0e8))
         || !GRAVITY_LINK1_LOADED_PARAMETERS_USABLE(gravity_link1_loaded_within(parameters, 5, GRAVITY_LINK1_LOADED_C(1.0e18)))) {

@@ -21,11 +21,11 @@
  */
 #include "gravity_link1_loaded_private.h"
 
-#if GRAVITY_LINK1_LOADED_GENERATION != 0xFB2F919BUL
+#if GRAVITY_LINK1_LOADED_GENERATION != 0x53FE3FFFUL
 #error "gravity_link1_loaded.h and gravity_link1_loaded_motor_from_joint.c are of different generations: generate the arm again"
 #endif
 
-int gravity_link1_loaded_motor_from_joint(
+gravity_link1_loaded_status_t gravity_link1_loaded_motor_from_joint(
     const gravity_link1_loaded_real_t q[GRAVITY_LINK1_LOADED_N_JOINTS],
     const gravity_link1_loaded_real_t dq[GRAVITY_LINK1_LOADED_N_JOINTS],
     const gravity_link1_loaded_real_t ddq[GRAVITY_LINK1_LOADED_N_JOINTS],
@@ -33,7 +33,7 @@ int gravity_link1_loaded_motor_from_joint(
     gravity_link1_loaded_real_t dq_m[GRAVITY_LINK1_LOADED_N_JOINTS],
     gravity_link1_loaded_real_t ddq_m[GRAVITY_LINK1_LOADED_N_JOINTS])
 {
-    int status = GRAVITY_LINK1_LOADED_STATUS_OK;
+    gravity_link1_loaded_status_t status = GRAVITY_LINK1_LOADED_STATUS_OK;
 
     if (!gravity_link1_loaded_within_joints(q, GRAVITY_LINK1_LOADED_C(1.0e8))
         || !gravity_link1_loaded_within_joints(dq, GRAVITY_LINK1_LOADED_C(1.0e10))

@@ -6,7 +6,7 @@
  * Arm gravity_link1_loaded, description 35cb3f0e339eb026.
  * SPDX-License-Identifier: 0BSD
  *
- * Operations: 2 (2 mul, 0 add, 0 neg), 2 trig, 1 other.
+ * Operations: 2 (2 mul, 0 add, 0 neg), 2 trig, 1 other calls (sign, select and the like).
  *
  * @param[in]   q    [1]  [rad]                            joint coordinates; norm at most 10000
  * @param[in]   dq   [1]  [rad/s]                          joint velocities; norm at most 100000
@@ -24,17 +24,17 @@
  */
 #include "gravity_link1_loaded_private.h"
 
-#if GRAVITY_LINK1_LOADED_GENERATION != 0xFB2F919BUL
+#if GRAVITY_LINK1_LOADED_GENERATION != 0x53FE3FFFUL
 #error "gravity_link1_loaded.h and gravity_link1_loaded_regressor.c are of different generations: generate the arm again"
 #endif
 
-int gravity_link1_loaded_regressor(
+gravity_link1_loaded_status_t gravity_link1_loaded_regressor(
     const gravity_link1_loaded_real_t q[GRAVITY_LINK1_LOADED_N_JOINTS],
     const gravity_link1_loaded_real_t dq[GRAVITY_LINK1_LOADED_N_JOINTS],
     const gravity_link1_loaded_real_t ddq[GRAVITY_LINK1_LOADED_N_JOINTS],
     gravity_link1_loaded_real_t out[GRAVITY_LINK1_LOADED_N_JOINTS * GRAVITY_LINK1_LOADED_N_PARAMETERS])
 {
-    int status = GRAVITY_LINK1_LOADED_STATUS_OK;
+    gravity_link1_loaded_status_t status = GRAVITY_LINK1_LOADED_STATUS_OK;
 
     if (!gravity_link1_loaded_within_joints(q, GRAVITY_LINK1_LOADED_C(1.0e8))
         || !gravity_link1_loaded_within_joints(dq, GRAVITY_LINK1_LOADED_C(1.0e10))
@@ -52,7 +52,7 @@ int gravity_link1_loaded_regressor(
     out[1] = GRAVITY_LINK1_LOADED_C(9.81) * t0;
     out[2] = GRAVITY_LINK1_LOADED_C(9.81) * t1;
     out[3] = dq[0];
-    const gravity_link1_loaded_real_t t2 = gravity_link1_loaded_sign(dq[0]);
+    const gravity_link1_loaded_real_t t2 = gravity_link1_loaded_sign(dq[0]); /* joint j1: coulomb_friction */
     out[4] = t2;
     return GRAVITY_LINK1_LOADED_STATUS_OK;
 }

@@ -6,7 +6,7 @@
  * Arm gravity_link1_loaded, description 35cb3f0e339eb026.
  * SPDX-License-Identifier: 0BSD
  *
- * Operations: 6 (4 mul, 2 add, 0 neg), 2 trig, 1 other.
+ * Operations: 6 (4 mul, 2 add, 0 neg), 2 trig, 1 other calls (sign, select and the like).
  *
  * @param[in]   q    [1]   [rad]                            joint coordinates; norm at most 10000
  * @param[in]   dq   [1]   [rad/s]                          joint velocities; norm at most 100000
@@ -25,17 +25,17 @@
  */
 #include "gravity_link1_loaded_private.h"
 
-#if GRAVITY_LINK1_LOADED_GENERATION != 0xFB2F919BUL
+#if GRAVITY_LINK1_LOADED_GENERATION != 0x53FE3FFFUL
 #error "gravity_link1_loaded.h and gravity_link1_loaded_regressor_standard.c are of different generations: generate the arm again"
 #endif
 
-int gravity_link1_loaded_regressor_standard(
+gravity_link1_loaded_status_t gravity_link1_loaded_regressor_standard(
     const gravity_link1_loaded_real_t q[GRAVITY_LINK1_LOADED_N_JOINTS],
     const gravity_link1_loaded_real_t dq[GRAVITY_LINK1_LOADED_N_JOINTS],
     const gravity_link1_loaded_real_t ddq[GRAVITY_LINK1_LOADED_N_JOINTS],
     gravity_link1_loaded_real_t out[GRAVITY_LINK1_LOADED_N_JOINTS * GRAVITY_LINK1_LOADED_N_STANDARD_PARAMETERS])
 {
-    int status = GRAVITY_LINK1_LOADED_STATUS_OK;
+    gravity_link1_loaded_status_t status = GRAVITY_LINK1_LOADED_STATUS_OK;
 
     if (!gravity_link1_loaded_within_joints(q, GRAVITY_LINK1_LOADED_C(1.0e8))
         || !gravity_link1_loaded_within_joints(dq, GRAVITY_LINK1_LOADED_C(1.0e10))
@@ -50,18 +50,18 @@ int gravity_link1_loaded_regressor_standard(
     gravity_link1_loaded_real_t t0, t2;
     GRAVITY_LINK1_LOADED_SINCOS(q[0], &t0, &t2);
     out[5] = ddq[0];
-    const gravity_link1_loaded_real_t t1 = GRAVITY_LINK1_LOADED_C(9.81) * t0;
+    const gravity_link1_loaded_real_t t1 = GRAVITY_LINK1_LOADED_C(9.81) * t0; /* link j1: motion */
     out[6] = t1;
     const gravity_link1_loaded_real_t t3 = GRAVITY_LINK1_LOADED_C(9.81) * t2;
     out[7] = t3;
     out[15] = ddq[0];
-    const gravity_link1_loaded_real_t t4 = GRAVITY_LINK1_LOADED_C(0.538534) * ddq[0];
+    const gravity_link1_loaded_real_t t4 = GRAVITY_LINK1_LOADED_C(0.538534) * ddq[0]; /* link j2: motion */
     const gravity_link1_loaded_real_t t5 = t1 + t4;
     out[16] = t4 + t5;
     out[17] = t3;
     out[19] = GRAVITY_LINK1_LOADED_C(0.538534) * t5;
     out[20] = dq[0];
-    const gravity_link1_loaded_real_t t6 = gravity_link1_loaded_sign(dq[0]);
+    const gravity_link1_loaded_real_t t6 = gravity_link1_loaded_sign(dq[0]); /* joint j1: coulomb_friction */
     out[21] = t6;
     /* always zero */
     out[0] = out[1] = out[2] = out[3] = out[4] = out[8] = out[9] = out[10] = out[11] = out[12] = out[13] =

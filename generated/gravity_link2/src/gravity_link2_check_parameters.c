@@ -8,16 +8,16 @@
  */
 #include "gravity_link2_private.h"
 
-#if GRAVITY_LINK2_GENERATION != 0x29702C56UL
+#if GRAVITY_LINK2_GENERATION != 0xAD4108EDUL
 #error "gravity_link2.h and gravity_link2_check_parameters.c are of different generations: generate the arm again"
 #endif
 
-int gravity_link2_check_parameters(const gravity_link2_real_t parameters[GRAVITY_LINK2_N_PARAMETERS])
+gravity_link2_status_t gravity_link2_check_parameters(const gravity_link2_real_t parameters[GRAVITY_LINK2_N_PARAMETERS])
 {
     return gravity_link2_within(parameters, 5, GRAVITY_LINK2_C(1.0e18)) ? GRAVITY_LINK2_STATUS_OK : GRAVITY_LINK2_STATUS_INPUT;
 }
 
-int gravity_link2_check_parameters_standard(const gravity_link2_real_t parameters[GRAVITY_LINK2_N_STANDARD_PARAMETERS])
+gravity_link2_status_t gravity_link2_check_parameters_standard(const gravity_link2_real_t parameters[GRAVITY_LINK2_N_STANDARD_PARAMETERS])
 {
     return gravity_link2_within(parameters, 12, GRAVITY_LINK2_C(1.0e18)) ? GRAVITY_LINK2_STATUS_OK : GRAVITY_LINK2_STATUS_INPUT;
 }

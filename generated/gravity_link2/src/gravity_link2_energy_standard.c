@@ -35,11 +35,11 @@
  */
 #include "gravity_link2_private.h"
 
-#if GRAVITY_LINK2_GENERATION != 0x29702C56UL
+#if GRAVITY_LINK2_GENERATION != 0xAD4108EDUL
 #error "gravity_link2.h and gravity_link2_energy_standard.c are of different generations: generate the arm again"
 #endif
 
-int gravity_link2_energy_standard(
+gravity_link2_status_t gravity_link2_energy_standard(
     const gravity_link2_real_t q[GRAVITY_LINK2_N_JOINTS],
     const gravity_link2_real_t dq[GRAVITY_LINK2_N_JOINTS],
     const gravity_link2_real_t parameters[GRAVITY_LINK2_N_STANDARD_PARAMETERS],
@@ -47,7 +47,7 @@ int gravity_link2_energy_standard(
     gravity_link2_real_t potential[1])
 {
     enum { XX1 = 0, XY1, XZ1, YY1, YZ1, ZZ1, MX1, MY1, MZ1, M1, FV1, FC1 };
-    int status = GRAVITY_LINK2_STATUS_OK;
+    gravity_link2_status_t status = GRAVITY_LINK2_STATUS_OK;
 
     if (!gravity_link2_within_joints(q, GRAVITY_LINK2_C(1.0e8))
         || !gravity_link2_within_joints(dq, GRAVITY_LINK2_C(1.0e10))

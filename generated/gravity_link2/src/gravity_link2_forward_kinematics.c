@@ -17,15 +17,15 @@
  */
 #include "gravity_link2_private.h"
 
-#if GRAVITY_LINK2_GENERATION != 0x29702C56UL
+#if GRAVITY_LINK2_GENERATION != 0xAD4108EDUL
 #error "gravity_link2.h and gravity_link2_forward_kinematics.c are of different generations: generate the arm again"
 #endif
 
-int gravity_link2_forward_kinematics(
+gravity_link2_status_t gravity_link2_forward_kinematics(
     const gravity_link2_real_t q[GRAVITY_LINK2_N_JOINTS],
     gravity_link2_real_t out[16 * GRAVITY_LINK2_N_LINKS])
 {
-    int status = GRAVITY_LINK2_STATUS_OK;
+    gravity_link2_status_t status = GRAVITY_LINK2_STATUS_OK;
 
     if (!gravity_link2_within_joints(q, GRAVITY_LINK2_C(1.0e8))) {
         status |= GRAVITY_LINK2_STATUS_INPUT;

@@ -7,16 +7,16 @@
  * Arm gravity_link2, description 1ddde3a17ccda7a0.
  * SPDX-License-Identifier: 0BSD
  *
- * Operations: 14 (9 mul, 5 add, 0 neg), 2 trig, 1 other.
+ * Operations: 14 (9 mul, 5 add, 0 neg), 2 trig, 1 other calls (sign, select and the like).
  *
- * @param[in]   q             [1]  [rad]                  joint coordinates; norm at most 10000
- * @param[in]   dq            [1]  [rad/s]                joint velocities; norm at most 100000
- * @param[in]   ddq           [1]  [rad/s^2]              joint accelerations; norm at most 1e+08
- * @param[in]   parameters    [5]                         base parameters; norm at most 1e+09
- * @param[out]  input         [1]  [N m]                  inputs: motor currents, efforts where undriven
- * @param[out]  input_by_q    [1]  [(N m) per (rad)]      d input / d q
- * @param[out]  input_by_dq   [1]  [(N m) per (rad/s)]    d input / d dq
- * @param[out]  input_by_ddq  [1]  [(N m) per (rad/s^2)]  d input / d ddq
+ * @param[in]   q             [1]  [rad]                joint coordinates; norm at most 10000
+ * @param[in]   dq            [1]  [rad/s]              joint velocities; norm at most 100000
+ * @param[in]   ddq           [1]  [rad/s^2]            joint accelerations; norm at most 1e+08
+ * @param[in]   parameters    [5]                       base parameters; norm at most 1e+09
+ * @param[out]  input         [1]  [N m]                inputs: motor currents, efforts where undriven
+ * @param[out]  input_by_q    [1]  [N m per rad]        d input / d q
+ * @param[out]  input_by_dq   [1]  [N m per (rad/s)]    d input / d dq
+ * @param[out]  input_by_ddq  [1]  [N m per (rad/s^2)]  d input / d ddq
  *
  * Coordinates:
  *
@@ -32,11 +32,11 @@
  */
 #include "gravity_link2_private.h"
 
-#if GRAVITY_LINK2_GENERATION != 0x29702C56UL
+#if GRAVITY_LINK2_GENERATION != 0xAD4108EDUL
 #error "gravity_link2.h and gravity_link2_inverse_dynamics_derivatives.c are of different generations: generate the arm again"
 #endif
 
-int gravity_link2_inverse_dynamics_derivatives(
+gravity_link2_status_t gravity_link2_inverse_dynamics_derivatives(
     const gravity_link2_real_t q[GRAVITY_LINK2_N_JOINTS],
     const gravity_link2_real_t dq[GRAVITY_LINK2_N_JOINTS],
     const gravity_link2_real_t ddq[GRAVITY_LINK2_N_JOINTS],
@@ -47,7 +47,7 @@ int gravity_link2_inverse_dynamics_derivatives(
     gravity_link2_real_t input_by_ddq[GRAVITY_LINK2_N_JOINTS])
 {
     enum { ZZ1 = 0, MX1, MY1, FV1, FC1 };
-    int status = GRAVITY_LINK2_STATUS_OK;
+    gravity_link2_status_t status = GRAVITY_LINK2_STATUS_OK;
 
     if (!gravity_link2_within_joints(q, GRAVITY_LINK2_C(1.0e8))
         || !gravity_link2_within_joints(dq, GRAVITY_LINK2_C(1.0e10))
@@ -65,8 +65,8 @@ int gravity_link2_inverse_dynamics_derivatives(
 
     gravity_link2_real_t t1, t3;
     GRAVITY_LINK2_SINCOS(q[0], &t1, &t3);
-    const gravity_link2_real_t t0 = gravity_link2_sign(dq[0]);
-    const gravity_link2_real_t t2 = GRAVITY_LINK2_C(9.81) * t1;
+    const gravity_link2_real_t t0 = gravity_link2_sign(dq[0]); /* joint j2: coulomb_friction */
+    const gravity_link2_real_t t2 = GRAVITY_LINK2_C(9.81) * t1; /* link j2: motion */
     const gravity_link2_real_t t4 = GRAVITY_LINK2_C(9.81) * t3;
     const gravity_link2_real_t t5 = parameters[FV1] * dq[0] + parameters[FC1] * t0 + (parameters[MX1] * t2
         + parameters[MY1] * t4 + parameters[ZZ1] * ddq[0]);

@@ -6,7 +6,7 @@
  * Arm gravity_link2, description 1ddde3a17ccda7a0.
  * SPDX-License-Identifier: 0BSD
  *
- * Operations: 11 (7 mul, 4 add, 0 neg), 2 trig, 1 other.
+ * Operations: 11 (7 mul, 4 add, 0 neg), 2 trig, 1 other calls (sign, select and the like).
  *
  * @param[in]   q           [1]   [rad]      joint coordinates; norm at most 10000
  * @param[in]   dq          [1]   [rad/s]    joint velocities; norm at most 100000
@@ -35,11 +35,11 @@
  */
 #include "gravity_link2_private.h"
 
-#if GRAVITY_LINK2_GENERATION != 0x29702C56UL
+#if GRAVITY_LINK2_GENERATION != 0xAD4108EDUL
 #error "gravity_link2.h and gravity_link2_inverse_dynamics_standard.c are of different generations: generate the arm again"
 #endif
 
-int gravity_link2_inverse_dynamics_standard(
+gravity_link2_status_t gravity_link2_inverse_dynamics_standard(
     const gravity_link2_real_t q[GRAVITY_LINK2_N_JOINTS],
     const gravity_link2_real_t dq[GRAVITY_LINK2_N_JOINTS],
     const gravity_link2_real_t ddq[GRAVITY_LINK2_N_JOINTS],
@@ -47,7 +47,7 @@ int gravity_link2_inverse_dynamics_standard(
     gravity_link2_real_t out[GRAVITY_LINK2_N_JOINTS])
 {
     enum { XX1 = 0, XY1, XZ1, YY1, YZ1, ZZ1, MX1, MY1, MZ1, M1, FV1, FC1 };
-    int status = GRAVITY_LINK2_STATUS_OK;
+    gravity_link2_status_t status = GRAVITY_LINK2_STATUS_OK;
 
     if (!gravity_link2_within_joints(q, GRAVITY_LINK2_C(1.0e8))
         || !gravity_link2_within_joints(dq, GRAVITY_LINK2_C(1.0e10))
@@ -62,7 +62,8 @@ int gravity_link2_inverse_dynamics_standard(
 
     gravity_link2_real_t t1, t2;
     GRAVITY_LINK2_SINCOS(q[0], &t1, &t2);
-    const gravity_link2_real_t t0 = gravity_link2_sign(dq[0]);
+    const gravity_link2_real_t t0 = gravity_link2_sign(dq[0]); /* joint j2: coulomb_friction */
+    /* link j2: force and moment */
     const gravity_link2_real_t t3 = GRAVITY_LINK2_C(9.81) * t1 * parameters[MX1]
         + GRAVITY_LINK2_C(9.81) * t2 * parameters[MY1] + ddq[0] * parameters[ZZ1];
     out[0] = dq[0] * parameters[FV1] + t0 * parameters[FC1] + t3;

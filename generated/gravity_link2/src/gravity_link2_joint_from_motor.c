@@ -21,11 +21,11 @@
  */
 #include "gravity_link2_private.h"
 
-#if GRAVITY_LINK2_GENERATION != 0x29702C56UL
+#if GRAVITY_LINK2_GENERATION != 0xAD4108EDUL
 #error "gravity_link2.h and gravity_link2_joint_from_motor.c are of different generations: generate the arm again"
 #endif
 
-int gravity_link2_joint_from_motor(
+gravity_link2_status_t gravity_link2_joint_from_motor(
     const gravity_link2_real_t q_m[GRAVITY_LINK2_N_JOINTS],
     const gravity_link2_real_t dq_m[GRAVITY_LINK2_N_JOINTS],
     const gravity_link2_real_t ddq_m[GRAVITY_LINK2_N_JOINTS],
@@ -33,7 +33,7 @@ int gravity_link2_joint_from_motor(
     gravity_link2_real_t dq[GRAVITY_LINK2_N_JOINTS],
     gravity_link2_real_t ddq[GRAVITY_LINK2_N_JOINTS])
 {
-    int status = GRAVITY_LINK2_STATUS_OK;
+    gravity_link2_status_t status = GRAVITY_LINK2_STATUS_OK;
 
     if (!gravity_link2_within_joints(q_m, GRAVITY_LINK2_C(1.0e18))
         || !gravity_link2_within_joints(dq_m, GRAVITY_LINK2_C(1.0e18))

@@ -21,11 +21,11 @@
  */
 #include "gravity_link2_private.h"
 
-#if GRAVITY_LINK2_GENERATION != 0x29702C56UL
+#if GRAVITY_LINK2_GENERATION != 0xAD4108EDUL
 #error "gravity_link2.h and gravity_link2_motor_from_joint.c are of different generations: generate the arm again"
 #endif
 
-int gravity_link2_motor_from_joint(
+gravity_link2_status_t gravity_link2_motor_from_joint(
     const gravity_link2_real_t q[GRAVITY_LINK2_N_JOINTS],
     const gravity_link2_real_t dq[GRAVITY_LINK2_N_JOINTS],
     const gravity_link2_real_t ddq[GRAVITY_LINK2_N_JOINTS],
@@ -33,7 +33,7 @@ int gravity_link2_motor_from_joint(
     gravity_link2_real_t dq_m[GRAVITY_LINK2_N_JOINTS],
     gravity_link2_real_t ddq_m[GRAVITY_LINK2_N_JOINTS])
 {
-    int status = GRAVITY_LINK2_STATUS_OK;
+    gravity_link2_status_t status = GRAVITY_LINK2_STATUS_OK;
 
     if (!gravity_link2_within_joints(q, GRAVITY_LINK2_C(1.0e8))
         || !gravity_link2_within_joints(dq, GRAVITY_LINK2_C(1.0e10))

@@ -6,7 +6,7 @@
  * Arm gravity_link2, description 1ddde3a17ccda7a0.
  * SPDX-License-Identifier: 0BSD
  *
- * Operations: 2 (2 mul, 0 add, 0 neg), 2 trig, 1 other.
+ * Operations: 2 (2 mul, 0 add, 0 neg), 2 trig, 1 other calls (sign, select and the like).
  *
  * @param[in]   q    [1]  [rad]                            joint coordinates; norm at most 10000
  * @param[in]   dq   [1]  [rad/s]                          joint velocities; norm at most 100000
@@ -23,7 +23,7 @@
  */
 #include "gravity_link2_private.h"
 
-#if GRAVITY_LINK2_GENERATION != 0x29702C56UL
+#if GRAVITY_LINK2_GENERATION != 0xAD4108EDUL
 #error "gravity_link2.h and gravity_link2_regressor_packed.c are of different generations: generate the arm again"
 #endif
 
@@ -35,13 +35,13 @@ const unsigned short gravity_link2_regressor_columns[GRAVITY_LINK2_N_PACKED] = {
     0, 1, 2, 3, 4
 };
 
-int gravity_link2_regressor_packed(
+gravity_link2_status_t gravity_link2_regressor_packed(
     const gravity_link2_real_t q[GRAVITY_LINK2_N_JOINTS],
     const gravity_link2_real_t dq[GRAVITY_LINK2_N_JOINTS],
     const gravity_link2_real_t ddq[GRAVITY_LINK2_N_JOINTS],
     gravity_link2_real_t out[GRAVITY_LINK2_N_PACKED])
 {
-    int status = GRAVITY_LINK2_STATUS_OK;
+    gravity_link2_status_t status = GRAVITY_LINK2_STATUS_OK;
 
     if (!gravity_link2_within_joints(q, GRAVITY_LINK2_C(1.0e8))
         || !gravity_link2_within_joints(dq, GRAVITY_LINK2_C(1.0e10))
@@ -59,7 +59,7 @@ int gravity_link2_regressor_packed(
     out[1] = GRAVITY_LINK2_C(9.81) * t0;
     out[2] = GRAVITY_LINK2_C(9.81) * t1;
     out[3] = dq[0];
-    const gravity_link2_real_t t2 = gravity_link2_sign(dq[0]);
+    const gravity_link2_real_t t2 = gravity_link2_sign(dq[0]); /* joint j2: coulomb_friction */
     out[4] = t2;
     return GRAVITY_LINK2_STATUS_OK;
 }

@@ -6,7 +6,7 @@
  * Arm gravity_link2, description 1ddde3a17ccda7a0.
  * SPDX-License-Identifier: 0BSD
  *
- * Operations: 2 (2 mul, 0 add, 0 neg), 2 trig, 1 other.
+ * Operations: 2 (2 mul, 0 add, 0 neg), 2 trig, 1 other calls (sign, select and the like).
  *
  * @param[in]   q    [1]   [rad]                            joint coordinates; norm at most 10000
  * @param[in]   dq   [1]   [rad/s]                          joint velocities; norm at most 100000
@@ -24,17 +24,17 @@
  */
 #include "gravity_link2_private.h"
 
-#if GRAVITY_LINK2_GENERATION != 0x29702C56UL
+#if GRAVITY_LINK2_GENERATION != 0xAD4108EDUL
 #error "gravity_link2.h and gravity_link2_regressor_standard.c are of different generations: generate the arm again"
 #endif
 
-int gravity_link2_regressor_standard(
+gravity_link2_status_t gravity_link2_regressor_standard(
     const gravity_link2_real_t q[GRAVITY_LINK2_N_JOINTS],
     const gravity_link2_real_t dq[GRAVITY_LINK2_N_JOINTS],
     const gravity_link2_real_t ddq[GRAVITY_LINK2_N_JOINTS],
     gravity_link2_real_t out[GRAVITY_LINK2_N_JOINTS * GRAVITY_LINK2_N_STANDARD_PARAMETERS])
 {
-    int status = GRAVITY_LINK2_STATUS_OK;
+    gravity_link2_status_t status = GRAVITY_LINK2_STATUS_OK;
 
     if (!gravity_link2_within_joints(q, GRAVITY_LINK2_C(1.0e8))
         || !gravity_link2_within_joints(dq, GRAVITY_LINK2_C(1.0e10))
@@ -52,7 +52,7 @@ int gravity_link2_regressor_standard(
     out[6] = GRAVITY_LINK2_C(9.81) * t0;
     out[7] = GRAVITY_LINK2_C(9.81) * t1;
     out[10] = dq[0];
-    const gravity_link2_real_t t2 = gravity_link2_sign(dq[0]);
+    const gravity_link2_real_t t2 = gravity_link2_sign(dq[0]); /* joint j2: coulomb_friction */
     out[11] = t2;
     /* always zero */
     out[0] = out[1] = out[2] = out[3] = out[4] = out[8] = out[9] = GRAVITY_LINK2_C(0.0);

@@ -13,7 +13,7 @@
  */
 #include "gravity_link2_private.h"
 
-#if GRAVITY_LINK2_GENERATION != 0x29702C56UL
+#if GRAVITY_LINK2_GENERATION != 0xAD4108EDUL
 #error "gravity_link2.h and gravity_link2_sincos.c are of different generations: generate the arm again"
 #endif
 

@@ -13,7 +13,8 @@
  *
  * Every function returns IIWA14_STATUS_OK, or the sum of the IIWA14_STATUS_ bits that apply; all of
  * its outputs are then zero. Inputs are checked by their Euclidean norm, so one that is not finite is
- * found too (not with -ffast-math). Outputs may not overlap inputs. Matrices are row-major.
+ * found too (not with -ffast-math). Outputs may not overlap inputs. Matrices are row-major. In the sources a
+ * remark behind a value says which link or joint it belongs to, and those after it up to the next remark.
  *
  * Coordinates:
  *
@@ -94,7 +95,7 @@
 #define IIWA14_H
 
 /** Number of this generation: header and sources of different ones do not compile together. */
-#define IIWA14_GENERATION 0x27C72E36UL
+#define IIWA14_GENERATION 0x1E31C9F2UL
 
 /** SHA-256 of the description that this is the model of, then after a blank the description's version, if any. */
 #define IIWA14_MODEL "4f01a5afe35e97fd79f71d51c6869d227bc33b1f7e6bd5668229ee16abfa0d3e"
@@ -127,6 +128,7 @@
 #define iiwa14_mass_matrix iiwa14_mass_matrix_float
 #define iiwa14_forward_dynamics iiwa14_forward_dynamics_float
 #define iiwa14_energy iiwa14_energy_float
+#define iiwa14_joint_effort iiwa14_joint_effort_float
 #define iiwa14_regressor iiwa14_regressor_float
 #define iiwa14_regressor_standard iiwa14_regressor_standard_float
 #define iiwa14_regressor_packed iiwa14_regressor_packed_float
@@ -137,6 +139,7 @@
 #define iiwa14_mass_matrix_standard iiwa14_mass_matrix_standard_float
 #define iiwa14_forward_dynamics_standard iiwa14_forward_dynamics_standard_float
 #define iiwa14_energy_standard iiwa14_energy_standard_float
+#define iiwa14_joint_effort_standard iiwa14_joint_effort_standard_float
 #define iiwa14_forward_kinematics iiwa14_forward_kinematics_float
 #define iiwa14_jacobian iiwa14_jacobian_float
 #define iiwa14_motor_from_joint iiwa14_motor_from_joint_float
@@ -146,6 +149,8 @@
 #define iiwa14_forward_dynamics_derivatives iiwa14_forward_dynamics_derivatives_float
 #define iiwa14_inverse_dynamics_derivatives_standard iiwa14_inverse_dynamics_derivatives_standard_float
 #define iiwa14_forward_dynamics_derivatives_standard iiwa14_forward_dynamics_derivatives_standard_float
+#define iiwa14_momentum_observer_step iiwa14_momentum_observer_step_float
+#define iiwa14_momentum_observer_step_standard iiwa14_momentum_observer_step_standard_float
 #define iiwa14_check_parameters iiwa14_check_parameters_float
 #define iiwa14_check_parameters_standard iiwa14_check_parameters_standard_float
 #define iiwa14_model iiwa14_model_float
@@ -165,11 +170,16 @@ typedef IIWA14_REAL iiwa14_real_t;
 #define IIWA14_N_PARAMETERS           62   /**< base parameters */
 #define IIWA14_N_STANDARD_PARAMETERS  91   /**< standard parameters */
 #define IIWA14_N_PACKED               207  /**< structural non-zeros of the regressor */
+#define IIWA14_N_OBSERVER_STATES      7    /**< state of the observer: the momentum that the model expects
+                                           */
 
-#define IIWA14_STATUS_OK     0
-#define IIWA14_STATUS_STROKE 1 /**< a lever would leave its stroke */
-#define IIWA14_STATUS_PIVOT  2 /**< a pivot of the mass matrix vanishes, or the result is beyond 1e15 */
-#define IIWA14_STATUS_INPUT  4 /**< an input is not finite or beyond its bound */
+/** IIWA14_STATUS_OK or bits of the others. */
+typedef unsigned int iiwa14_status_t;
+
+#define IIWA14_STATUS_OK     0U
+#define IIWA14_STATUS_STROKE 1U /**< a lever would leave its stroke */
+#define IIWA14_STATUS_PIVOT  2U /**< a pivot of the mass matrix vanishes, or the result is beyond 1e15 */
+#define IIWA14_STATUS_INPUT  4U /**< an input is not finite or beyond its bound */
 
 /** Indices of the base parameters. */
 enum {
@@ -350,7 +360,7 @@ const char *iiwa14_model(void);
  *
  * @return IIWA14_STATUS_OK or IIWA14_STATUS_INPUT
  */
-int iiwa14_check_parameters(const iiwa14_real_t parameters[IIWA14_N_PARAMETERS]);
+iiwa14_status_t iiwa14_check_parameters(const iiwa14_real_t parameters[IIWA14_N_PARAMETERS]);
 
 /**
  * Whether standard parameters can be used: finite, and their norm within its bound. Every function that takes them checks
@@ -358,7 +368,7 @@ int iiwa14_check_parameters(const iiwa14_real_t parameters[IIWA14_N_PARAMETERS])
  *
  * @return IIWA14_STATUS_OK or IIWA14_STATUS_INPUT
  */
-int iiwa14_check_parameters_standard(const iiwa14_real_t parameters[IIWA14_N_STANDARD_PARAMETERS]);
+iiwa14_status_t iiwa14_check_parameters_standard(const iiwa14_real_t parameters[IIWA14_N_STANDARD_PARAMETERS]);
 
 /**
  * Inputs that give the accelerations ddq in the state q, dq; base parameters.
@@ -370,9 +380,9 @@ int iiwa14_check_parameters_standard(const iiwa14_real_t parameters[IIWA14_N_STA
  * @param[out]  out         [7]   [A]        inputs: motor currents, efforts where undriven
  * @return IIWA14_STATUS_OK or status bits
  *
- * Operations: 620 (332 mul, 288 add, 0 neg), 12 trig, 7 other.
+ * Operations: 620 (332 mul, 288 add, 0 neg), 12 trig, 7 other calls (sign, select and the like).
  */
-int iiwa14_inverse_dynamics(
+iiwa14_status_t iiwa14_inverse_dynamics(
     const iiwa14_real_t q[IIWA14_N_JOINTS],
     const iiwa14_real_t dq[IIWA14_N_JOINTS],
     const iiwa14_real_t ddq[IIWA14_N_JOINTS],
@@ -389,7 +399,7 @@ int iiwa14_inverse_dynamics(
  *
  * Operations: 109 (71 mul, 38 add, 0 neg), 12 trig.
  */
-int iiwa14_gravity(
+iiwa14_status_t iiwa14_gravity(
     const iiwa14_real_t q[IIWA14_N_JOINTS],
     const iiwa14_real_t parameters[IIWA14_N_PARAMETERS],
     iiwa14_real_t out[IIWA14_N_JOINTS]);
@@ -403,9 +413,9 @@ int iiwa14_gravity(
  * @param[out]  out         [7]   [A]      inputs: motor currents, efforts where undriven
  * @return IIWA14_STATUS_OK or status bits
  *
- * Operations: 586 (318 mul, 268 add, 0 neg), 12 trig, 7 other.
+ * Operations: 586 (318 mul, 268 add, 0 neg), 12 trig, 7 other calls (sign, select and the like).
  */
-int iiwa14_bias(
+iiwa14_status_t iiwa14_bias(
     const iiwa14_real_t q[IIWA14_N_JOINTS],
     const iiwa14_real_t dq[IIWA14_N_JOINTS],
     const iiwa14_real_t parameters[IIWA14_N_PARAMETERS],
@@ -421,7 +431,7 @@ int iiwa14_bias(
  *
  * Operations: 311 (171 mul, 140 add, 0 neg), 12 trig.
  */
-int iiwa14_mass_matrix(
+iiwa14_status_t iiwa14_mass_matrix(
     const iiwa14_real_t q[IIWA14_N_JOINTS],
     const iiwa14_real_t parameters[IIWA14_N_PARAMETERS],
     iiwa14_real_t out[IIWA14_N_JOINTS * IIWA14_N_JOINTS]);
@@ -437,9 +447,9 @@ int iiwa14_mass_matrix(
  * @param[out]  out         [7]   [rad/s^2]  joint accelerations
  * @return IIWA14_STATUS_OK or status bits
  *
- * Operations: 1140 (621 mul, 519 add, 0 neg), 7 div, 12 trig, 7 other.
+ * Operations: 1140 (621 mul, 519 add, 0 neg), 7 div, 12 trig, 7 other calls (sign, select and the like).
  */
-int iiwa14_forward_dynamics(
+iiwa14_status_t iiwa14_forward_dynamics(
     const iiwa14_real_t q[IIWA14_N_JOINTS],
     const iiwa14_real_t dq[IIWA14_N_JOINTS],
     const iiwa14_real_t input[IIWA14_N_JOINTS],
@@ -458,12 +468,32 @@ int iiwa14_forward_dynamics(
  *
  * Operations: 314 (199 mul, 115 add, 0 neg), 12 trig.
  */
-int iiwa14_energy(
+iiwa14_status_t iiwa14_energy(
     const iiwa14_real_t q[IIWA14_N_JOINTS],
     const iiwa14_real_t dq[IIWA14_N_JOINTS],
     const iiwa14_real_t parameters[IIWA14_N_PARAMETERS],
     iiwa14_real_t kinetic[1],
     iiwa14_real_t potential[1]);
+
+/**
+ * Efforts of the drives at the joints that give the accelerations ddq in the state q, dq; base
+ * parameters.
+ *
+ * @param[in]   q           [7]   [rad]      joint coordinates; norm at most 10000
+ * @param[in]   dq          [7]   [rad/s]    joint velocities; norm at most 100000
+ * @param[in]   ddq         [7]   [rad/s^2]  joint accelerations; norm at most 1e+08
+ * @param[in]   parameters  [62]             base parameters; norm at most 1e+09
+ * @param[out]  out         [7]   [N m]      efforts at the joints
+ * @return IIWA14_STATUS_OK or status bits
+ *
+ * Operations: 613 (325 mul, 288 add, 0 neg), 12 trig, 7 other calls (sign, select and the like).
+ */
+iiwa14_status_t iiwa14_joint_effort(
+    const iiwa14_real_t q[IIWA14_N_JOINTS],
+    const iiwa14_real_t dq[IIWA14_N_JOINTS],
+    const iiwa14_real_t ddq[IIWA14_N_JOINTS],
+    const iiwa14_real_t parameters[IIWA14_N_PARAMETERS],
+    iiwa14_real_t out[IIWA14_N_JOINTS]);
 
 /**
  * Inputs per unit of each base parameter.
@@ -475,9 +505,9 @@ int iiwa14_energy(
  *                                                         row-major
  * @return IIWA14_STATUS_OK or status bits
  *
- * Operations: 1133 (696 mul, 430 add, 7 neg), 12 trig, 7 other.
+ * Operations: 1133 (696 mul, 430 add, 7 neg), 12 trig, 7 other calls (sign, select and the like).
  */
-int iiwa14_regressor(
+iiwa14_status_t iiwa14_regressor(
     const iiwa14_real_t q[IIWA14_N_JOINTS],
     const iiwa14_real_t dq[IIWA14_N_JOINTS],
     const iiwa14_real_t ddq[IIWA14_N_JOINTS],
@@ -493,9 +523,9 @@ int iiwa14_regressor(
  *                                                         row-major
  * @return IIWA14_STATUS_OK or status bits
  *
- * Operations: 1325 (778 mul, 537 add, 10 neg), 12 trig, 7 other.
+ * Operations: 1325 (778 mul, 537 add, 10 neg), 12 trig, 7 other calls (sign, select and the like).
  */
-int iiwa14_regressor_standard(
+iiwa14_status_t iiwa14_regressor_standard(
     const iiwa14_real_t q[IIWA14_N_JOINTS],
     const iiwa14_real_t dq[IIWA14_N_JOINTS],
     const iiwa14_real_t ddq[IIWA14_N_JOINTS],
@@ -510,9 +540,9 @@ int iiwa14_regressor_standard(
  * @param[out]  out  [207]  [A per unit of the parameter]  structural non-zeros, row after row
  * @return IIWA14_STATUS_OK or status bits
  *
- * Operations: 1133 (696 mul, 430 add, 7 neg), 12 trig, 7 other.
+ * Operations: 1133 (696 mul, 430 add, 7 neg), 12 trig, 7 other calls (sign, select and the like).
  */
-int iiwa14_regressor_packed(
+iiwa14_status_t iiwa14_regressor_packed(
     const iiwa14_real_t q[IIWA14_N_JOINTS],
     const iiwa14_real_t dq[IIWA14_N_JOINTS],
     const iiwa14_real_t ddq[IIWA14_N_JOINTS],
@@ -530,9 +560,9 @@ int iiwa14_regressor_packed(
  *                                                           row-major
  * @return IIWA14_STATUS_OK or status bits
  *
- * Operations: 1220 (754 mul, 463 add, 3 neg), 12 trig, 7 other.
+ * Operations: 1220 (754 mul, 463 add, 3 neg), 12 trig, 7 other calls (sign, select and the like).
  */
-int iiwa14_slotine_li_regressor(
+iiwa14_status_t iiwa14_slotine_li_regressor(
     const iiwa14_real_t q[IIWA14_N_JOINTS],
     const iiwa14_real_t dq[IIWA14_N_JOINTS],
     const iiwa14_real_t dq_r[IIWA14_N_JOINTS],
@@ -549,9 +579,9 @@ int iiwa14_slotine_li_regressor(
  * @param[out]  out         [7]   [A]        inputs: motor currents, efforts where undriven
  * @return IIWA14_STATUS_OK or status bits
  *
- * Operations: 744 (387 mul, 357 add, 0 neg), 12 trig, 7 other.
+ * Operations: 744 (387 mul, 357 add, 0 neg), 12 trig, 7 other calls (sign, select and the like).
  */
-int iiwa14_inverse_dynamics_standard(
+iiwa14_status_t iiwa14_inverse_dynamics_standard(
     const iiwa14_real_t q[IIWA14_N_JOINTS],
     const iiwa14_real_t dq[IIWA14_N_JOINTS],
     const iiwa14_real_t ddq[IIWA14_N_JOINTS],
@@ -568,7 +598,7 @@ int iiwa14_inverse_dynamics_standard(
  *
  * Operations: 197 (121 mul, 76 add, 0 neg), 12 trig.
  */
-int iiwa14_gravity_standard(
+iiwa14_status_t iiwa14_gravity_standard(
     const iiwa14_real_t q[IIWA14_N_JOINTS],
     const iiwa14_real_t parameters[IIWA14_N_STANDARD_PARAMETERS],
     iiwa14_real_t out[IIWA14_N_JOINTS]);
@@ -582,9 +612,9 @@ int iiwa14_gravity_standard(
  * @param[out]  out         [7]   [A]      inputs: motor currents, efforts where undriven
  * @return IIWA14_STATUS_OK or status bits
  *
- * Operations: 704 (369 mul, 335 add, 0 neg), 12 trig, 7 other.
+ * Operations: 704 (369 mul, 335 add, 0 neg), 12 trig, 7 other calls (sign, select and the like).
  */
-int iiwa14_bias_standard(
+iiwa14_status_t iiwa14_bias_standard(
     const iiwa14_real_t q[IIWA14_N_JOINTS],
     const iiwa14_real_t dq[IIWA14_N_JOINTS],
     const iiwa14_real_t parameters[IIWA14_N_STANDARD_PARAMETERS],
@@ -600,7 +630,7 @@ int iiwa14_bias_standard(
  *
  * Operations: 349 (182 mul, 167 add, 0 neg), 12 trig.
  */
-int iiwa14_mass_matrix_standard(
+iiwa14_status_t iiwa14_mass_matrix_standard(
     const iiwa14_real_t q[IIWA14_N_JOINTS],
     const iiwa14_real_t parameters[IIWA14_N_STANDARD_PARAMETERS],
     iiwa14_real_t out[IIWA14_N_JOINTS * IIWA14_N_JOINTS]);
@@ -616,9 +646,9 @@ int iiwa14_mass_matrix_standard(
  * @param[out]  out         [7]   [rad/s^2]  joint accelerations
  * @return IIWA14_STATUS_OK or status bits
  *
- * Operations: 1295 (683 mul, 612 add, 0 neg), 7 div, 12 trig, 7 other.
+ * Operations: 1295 (683 mul, 612 add, 0 neg), 7 div, 12 trig, 7 other calls (sign, select and the like).
  */
-int iiwa14_forward_dynamics_standard(
+iiwa14_status_t iiwa14_forward_dynamics_standard(
     const iiwa14_real_t q[IIWA14_N_JOINTS],
     const iiwa14_real_t dq[IIWA14_N_JOINTS],
     const iiwa14_real_t input[IIWA14_N_JOINTS],
@@ -637,12 +667,32 @@ int iiwa14_forward_dynamics_standard(
  *
  * Operations: 426 (261 mul, 165 add, 0 neg), 12 trig.
  */
-int iiwa14_energy_standard(
+iiwa14_status_t iiwa14_energy_standard(
     const iiwa14_real_t q[IIWA14_N_JOINTS],
     const iiwa14_real_t dq[IIWA14_N_JOINTS],
     const iiwa14_real_t parameters[IIWA14_N_STANDARD_PARAMETERS],
     iiwa14_real_t kinetic[1],
     iiwa14_real_t potential[1]);
+
+/**
+ * Efforts of the drives at the joints that give the accelerations ddq in the state q, dq; standard
+ * parameters.
+ *
+ * @param[in]   q           [7]   [rad]      joint coordinates; norm at most 10000
+ * @param[in]   dq          [7]   [rad/s]    joint velocities; norm at most 100000
+ * @param[in]   ddq         [7]   [rad/s^2]  joint accelerations; norm at most 1e+08
+ * @param[in]   parameters  [91]             standard parameters; norm at most 1e+09
+ * @param[out]  out         [7]   [N m]      efforts at the joints
+ * @return IIWA14_STATUS_OK or status bits
+ *
+ * Operations: 737 (380 mul, 357 add, 0 neg), 12 trig, 7 other calls (sign, select and the like).
+ */
+iiwa14_status_t iiwa14_joint_effort_standard(
+    const iiwa14_real_t q[IIWA14_N_JOINTS],
+    const iiwa14_real_t dq[IIWA14_N_JOINTS],
+    const iiwa14_real_t ddq[IIWA14_N_JOINTS],
+    const iiwa14_real_t parameters[IIWA14_N_STANDARD_PARAMETERS],
+    iiwa14_real_t out[IIWA14_N_JOINTS]);
 
 /**
  * Homogeneous transforms from every link's frame to the base, link after link.
@@ -660,7 +710,7 @@ int iiwa14_energy_standard(
  *
  * Operations: 122 (71 mul, 35 add, 16 neg), 14 trig.
  */
-int iiwa14_forward_kinematics(
+iiwa14_status_t iiwa14_forward_kinematics(
     const iiwa14_real_t q[IIWA14_N_JOINTS],
     iiwa14_real_t out[16 * IIWA14_N_LINKS]);
 
@@ -673,7 +723,7 @@ int iiwa14_forward_kinematics(
  *
  * Operations: 129 (81 mul, 43 add, 5 neg), 12 trig.
  */
-int iiwa14_jacobian(
+iiwa14_status_t iiwa14_jacobian(
     const iiwa14_real_t q[IIWA14_N_JOINTS],
     iiwa14_real_t out[6 * IIWA14_N_JOINTS]);
 
@@ -690,7 +740,7 @@ int iiwa14_jacobian(
  *
  * Operations: 21 (21 mul, 0 add, 0 neg).
  */
-int iiwa14_motor_from_joint(
+iiwa14_status_t iiwa14_motor_from_joint(
     const iiwa14_real_t q[IIWA14_N_JOINTS],
     const iiwa14_real_t dq[IIWA14_N_JOINTS],
     const iiwa14_real_t ddq[IIWA14_N_JOINTS],
@@ -711,7 +761,7 @@ int iiwa14_motor_from_joint(
  *
  * Operations: 21 (21 mul, 0 add, 0 neg).
  */
-int iiwa14_joint_from_motor(
+iiwa14_status_t iiwa14_joint_from_motor(
     const iiwa14_real_t q_m[IIWA14_N_JOINTS],
     const iiwa14_real_t dq_m[IIWA14_N_JOINTS],
     const iiwa14_real_t ddq_m[IIWA14_N_JOINTS],
@@ -722,13 +772,13 @@ int iiwa14_joint_from_motor(
 /**
  * Joint effort per input.
  *
- * @param[in]   q    [7]  [rad]            joint coordinates; norm at most 10000
- * @param[out]  out  [7]  [(N m) per (A)]  drive gains K
+ * @param[in]   q    [7]  [rad]        joint coordinates; norm at most 10000
+ * @param[out]  out  [7]  [N m per A]  drive gains K
  * @return IIWA14_STATUS_OK or status bits
  *
  * Operations: 0 (0 mul, 0 add, 0 neg).
  */
-int iiwa14_drive_gain(
+iiwa14_status_t iiwa14_drive_gain(
     const iiwa14_real_t q[IIWA14_N_JOINTS],
     iiwa14_real_t out[IIWA14_N_JOINTS]);
 
@@ -736,19 +786,19 @@ int iiwa14_drive_gain(
  * Inputs that give the accelerations ddq, and their derivatives; at a kink of a law, as of dry
  * friction at rest, the mean of both sides; base parameters.
  *
- * @param[in]   q             [7]   [rad]                joint coordinates; norm at most 10000
- * @param[in]   dq            [7]   [rad/s]              joint velocities; norm at most 100000
- * @param[in]   ddq           [7]   [rad/s^2]            joint accelerations; norm at most 1e+08
- * @param[in]   parameters    [62]                       base parameters; norm at most 1e+09
- * @param[out]  input         [7]   [A]                  inputs: motor currents, efforts where undriven
- * @param[out]  input_by_q    [49]  [(A) per (rad)]      d input / d q; 7 x 7, row-major
- * @param[out]  input_by_dq   [49]  [(A) per (rad/s)]    d input / d dq; 7 x 7, row-major
- * @param[out]  input_by_ddq  [49]  [(A) per (rad/s^2)]  d input / d ddq; 7 x 7, row-major
+ * @param[in]   q             [7]   [rad]              joint coordinates; norm at most 10000
+ * @param[in]   dq            [7]   [rad/s]            joint velocities; norm at most 100000
+ * @param[in]   ddq           [7]   [rad/s^2]          joint accelerations; norm at most 1e+08
+ * @param[in]   parameters    [62]                     base parameters; norm at most 1e+09
+ * @param[out]  input         [7]   [A]                inputs: motor currents, efforts where undriven
+ * @param[out]  input_by_q    [49]  [A per rad]        d input / d q; 7 x 7, row-major
+ * @param[out]  input_by_dq   [49]  [A per (rad/s)]    d input / d dq; 7 x 7, row-major
+ * @param[out]  input_by_ddq  [49]  [A per (rad/s^2)]  d input / d ddq; 7 x 7, row-major
  * @return IIWA14_STATUS_OK or status bits
  *
- * Operations: 2891 (1666 mul, 1225 add, 0 neg), 12 trig, 7 other.
+ * Operations: 2891 (1666 mul, 1225 add, 0 neg), 12 trig, 7 other calls (sign, select and the like).
  */
-int iiwa14_inverse_dynamics_derivatives(
+iiwa14_status_t iiwa14_inverse_dynamics_derivatives(
     const iiwa14_real_t q[IIWA14_N_JOINTS],
     const iiwa14_real_t dq[IIWA14_N_JOINTS],
     const iiwa14_real_t ddq[IIWA14_N_JOINTS],
@@ -768,14 +818,14 @@ int iiwa14_inverse_dynamics_derivatives(
  *                                                           norm at most 1e+09
  * @param[in]   parameters    [62]                           base parameters; norm at most 1e+09
  * @param[out]  ddq           [7]   [rad/s^2]                joint accelerations
- * @param[out]  ddq_by_q      [49]  [(rad/s^2) per (rad)]    d ddq / d q; 7 x 7, row-major
+ * @param[out]  ddq_by_q      [49]  [(rad/s^2) per rad]      d ddq / d q; 7 x 7, row-major
  * @param[out]  ddq_by_dq     [49]  [(rad/s^2) per (rad/s)]  d ddq / d dq; 7 x 7, row-major
- * @param[out]  ddq_by_input  [49]  [(rad/s^2) per (A)]      d ddq / d input; 7 x 7, row-major
+ * @param[out]  ddq_by_input  [49]  [(rad/s^2) per A]        d ddq / d input; 7 x 7, row-major
  * @return IIWA14_STATUS_OK or status bits
  *
- * Operations: 4854 (2695 mul, 2159 add, 0 neg), 7 div, 12 trig, 7 other.
+ * Operations: 4854 (2695 mul, 2159 add, 0 neg), 7 div, 12 trig, 7 other calls (sign, select and the like).
  */
-int iiwa14_forward_dynamics_derivatives(
+iiwa14_status_t iiwa14_forward_dynamics_derivatives(
     const iiwa14_real_t q[IIWA14_N_JOINTS],
     const iiwa14_real_t dq[IIWA14_N_JOINTS],
     const iiwa14_real_t input[IIWA14_N_JOINTS],
@@ -789,19 +839,19 @@ int iiwa14_forward_dynamics_derivatives(
  * Inputs that give the accelerations ddq, and their derivatives; at a kink of a law, as of dry
  * friction at rest, the mean of both sides; standard parameters.
  *
- * @param[in]   q             [7]   [rad]                joint coordinates; norm at most 10000
- * @param[in]   dq            [7]   [rad/s]              joint velocities; norm at most 100000
- * @param[in]   ddq           [7]   [rad/s^2]            joint accelerations; norm at most 1e+08
- * @param[in]   parameters    [91]                       standard parameters; norm at most 1e+09
- * @param[out]  input         [7]   [A]                  inputs: motor currents, efforts where undriven
- * @param[out]  input_by_q    [49]  [(A) per (rad)]      d input / d q; 7 x 7, row-major
- * @param[out]  input_by_dq   [49]  [(A) per (rad/s)]    d input / d dq; 7 x 7, row-major
- * @param[out]  input_by_ddq  [49]  [(A) per (rad/s^2)]  d input / d ddq; 7 x 7, row-major
+ * @param[in]   q             [7]   [rad]              joint coordinates; norm at most 10000
+ * @param[in]   dq            [7]   [rad/s]            joint velocities; norm at most 100000
+ * @param[in]   ddq           [7]   [rad/s^2]          joint accelerations; norm at most 1e+08
+ * @param[in]   parameters    [91]                     standard parameters; norm at most 1e+09
+ * @param[out]  input         [7]   [A]                inputs: motor currents, efforts where undriven
+ * @param[out]  input_by_q    [49]  [A per rad]        d input / d q; 7 x 7, row-major
+ * @param[out]  input_by_dq   [49]  [A per (rad/s)]    d input / d dq; 7 x 7, row-major
+ * @param[out]  input_by_ddq  [49]  [A per (rad/s^2)]  d input / d ddq; 7 x 7, row-major
  * @return IIWA14_STATUS_OK or status bits
  *
- * Operations: 3169 (1787 mul, 1382 add, 0 neg), 12 trig, 7 other.
+ * Operations: 3169 (1787 mul, 1382 add, 0 neg), 12 trig, 7 other calls (sign, select and the like).
  */
-int iiwa14_inverse_dynamics_derivatives_standard(
+iiwa14_status_t iiwa14_inverse_dynamics_derivatives_standard(
     const iiwa14_real_t q[IIWA14_N_JOINTS],
     const iiwa14_real_t dq[IIWA14_N_JOINTS],
     const iiwa14_real_t ddq[IIWA14_N_JOINTS],
@@ -821,14 +871,14 @@ int iiwa14_inverse_dynamics_derivatives_standard(
  *                                                           norm at most 1e+09
  * @param[in]   parameters    [91]                           standard parameters; norm at most 1e+09
  * @param[out]  ddq           [7]   [rad/s^2]                joint accelerations
- * @param[out]  ddq_by_q      [49]  [(rad/s^2) per (rad)]    d ddq / d q; 7 x 7, row-major
+ * @param[out]  ddq_by_q      [49]  [(rad/s^2) per rad]      d ddq / d q; 7 x 7, row-major
  * @param[out]  ddq_by_dq     [49]  [(rad/s^2) per (rad/s)]  d ddq / d dq; 7 x 7, row-major
- * @param[out]  ddq_by_input  [49]  [(rad/s^2) per (A)]      d ddq / d input; 7 x 7, row-major
+ * @param[out]  ddq_by_input  [49]  [(rad/s^2) per A]        d ddq / d input; 7 x 7, row-major
  * @return IIWA14_STATUS_OK or status bits
  *
- * Operations: 5221 (2856 mul, 2365 add, 0 neg), 7 div, 12 trig, 7 other.
+ * Operations: 5221 (2856 mul, 2365 add, 0 neg), 7 div, 12 trig, 7 other calls (sign, select and the like).
  */
-int iiwa14_forward_dynamics_derivatives_standard(
+iiwa14_status_t iiwa14_forward_dynamics_derivatives_standard(
     const iiwa14_real_t q[IIWA14_N_JOINTS],
     const iiwa14_real_t dq[IIWA14_N_JOINTS],
     const iiwa14_real_t input[IIWA14_N_JOINTS],
@@ -837,6 +887,66 @@ int iiwa14_forward_dynamics_derivatives_standard(
     iiwa14_real_t ddq_by_q[IIWA14_N_JOINTS * IIWA14_N_JOINTS],
     iiwa14_real_t ddq_by_dq[IIWA14_N_JOINTS * IIWA14_N_JOINTS],
     iiwa14_real_t ddq_by_input[IIWA14_N_JOINTS * IIWA14_N_JOINTS]);
+
+/**
+ * External efforts at the joints by the generalised momentum, with a delay of 1 / gain; state: zero at
+ * first, then what the step before gave; base parameters.
+ *
+ * @param[in]   q           [7]   [rad]       joint coordinates; norm at most 10000
+ * @param[in]   dq          [7]   [rad/s]     joint velocities; norm at most 100000
+ * @param[in]   input       [7]   [A]         inputs: motor currents, efforts where undriven; norm at most
+ *                                            1e+09
+ * @param[in]   dt          [1]   [s]         time step; norm at most 10000
+ * @param[in]   gain        [7]   [1/s]       gains of the observer, gain dt below 1; norm at most 100000
+ * @param[in]   parameters  [62]              base parameters; norm at most 1e+09
+ * @param[in]   state       [7]   [kg m^2/s]  state of the observer: the momentum that the model expects; norm
+ *                                            at most 1e+09
+ * @param[out]  state_next  [7]   [kg m^2/s]  state after the step
+ * @param[out]  external    [7]   [N m]       efforts that act on the arm from outside
+ * @return IIWA14_STATUS_OK or status bits
+ *
+ * Operations: 574 (325 mul, 242 add, 7 neg), 12 trig, 7 other calls (sign, select and the like).
+ */
+iiwa14_status_t iiwa14_momentum_observer_step(
+    const iiwa14_real_t q[IIWA14_N_JOINTS],
+    const iiwa14_real_t dq[IIWA14_N_JOINTS],
+    const iiwa14_real_t input[IIWA14_N_JOINTS],
+    const iiwa14_real_t dt[1],
+    const iiwa14_real_t gain[IIWA14_N_JOINTS],
+    const iiwa14_real_t parameters[IIWA14_N_PARAMETERS],
+    const iiwa14_real_t state[IIWA14_N_OBSERVER_STATES],
+    iiwa14_real_t state_next[IIWA14_N_OBSERVER_STATES],
+    iiwa14_real_t external[IIWA14_N_JOINTS]);
+
+/**
+ * External efforts at the joints by the generalised momentum, with a delay of 1 / gain; state: zero at
+ * first, then what the step before gave; standard parameters.
+ *
+ * @param[in]   q           [7]   [rad]       joint coordinates; norm at most 10000
+ * @param[in]   dq          [7]   [rad/s]     joint velocities; norm at most 100000
+ * @param[in]   input       [7]   [A]         inputs: motor currents, efforts where undriven; norm at most
+ *                                            1e+09
+ * @param[in]   dt          [1]   [s]         time step; norm at most 10000
+ * @param[in]   gain        [7]   [1/s]       gains of the observer, gain dt below 1; norm at most 100000
+ * @param[in]   parameters  [91]              standard parameters; norm at most 1e+09
+ * @param[in]   state       [7]   [kg m^2/s]  state of the observer: the momentum that the model expects; norm
+ *                                            at most 1e+09
+ * @param[out]  state_next  [7]   [kg m^2/s]  state after the step
+ * @param[out]  external    [7]   [N m]       efforts that act on the arm from outside
+ * @return IIWA14_STATUS_OK or status bits
+ *
+ * Operations: 756 (423 mul, 326 add, 7 neg), 12 trig, 7 other calls (sign, select and the like).
+ */
+iiwa14_status_t iiwa14_momentum_observer_step_standard(
+    const iiwa14_real_t q[IIWA14_N_JOINTS],
+    const iiwa14_real_t dq[IIWA14_N_JOINTS],
+    const iiwa14_real_t input[IIWA14_N_JOINTS],
+    const iiwa14_real_t dt[1],
+    const iiwa14_real_t gain[IIWA14_N_JOINTS],
+    const iiwa14_real_t parameters[IIWA14_N_STANDARD_PARAMETERS],
+    const iiwa14_real_t state[IIWA14_N_OBSERVER_STATES],
+    iiwa14_real_t state_next[IIWA14_N_OBSERVER_STATES],
+    iiwa14_real_t external[IIWA14_N_JOINTS]);
 
 #ifdef __cplusplus
 }

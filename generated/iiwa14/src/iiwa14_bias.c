@@ -6,7 +6,7 @@
  * Arm iiwa14, description 4f01a5afe35e97fd.
  * SPDX-License-Identifier: 0BSD
  *
- * Operations: 586 (318 mul, 268 add, 0 neg), 12 trig, 7 other.
+ * Operations: 586 (318 mul, 268 add, 0 neg), 12 trig, 7 other calls (sign, select and the like).
  *
  * @param[in]   q           [7]   [rad]    joint coordinates; norm at most 10000
  * @param[in]   dq          [7]   [rad/s]  joint velocities; norm at most 100000
@@ -90,11 +90,11 @@
  */
 #include "iiwa14_private.h"
 
-#if IIWA14_GENERATION != 0x27C72E36UL
+#if IIWA14_GENERATION != 0x1E31C9F2UL
 #error "iiwa14.h and iiwa14_bias.c are of different generations: generate the arm again"
 #endif
 
-int iiwa14_bias(
+iiwa14_status_t iiwa14_bias(
     const iiwa14_real_t q[IIWA14_N_JOINTS],
     const iiwa14_real_t dq[IIWA14_N_JOINTS],
     const iiwa14_real_t parameters[IIWA14_N_PARAMETERS],
@@ -104,7 +104,7 @@ int iiwa14_bias(
         XZ4, YZ4, ZZ4R, MX4, MY4R, XX5R, XY5, XZ5, YZ5, ZZ5R, MX5, MY5R, XX6R, XY6, XZ6, YZ6, ZZ6R, MX6, MY6R,
         XX7R, XY7, XZ7R, YZ7R, ZZ7, MX7, MY7, FV1, FC1, FV2, FC2, FV3, FC3, IA3, FV4, FC4, IA4, FV5, FC5, IA5,
         FV6, FC6, IA6, FV7, FC7, IA7 };
-    int status = IIWA14_STATUS_OK;
+    iiwa14_status_t status = IIWA14_STATUS_OK;
 
     if (!iiwa14_within_joints(q, IIWA14_C(1.0e8))
         || !iiwa14_within_joints(dq, IIWA14_C(1.0e10))
@@ -128,57 +128,57 @@ int iiwa14_bias(
     IIWA14_SINCOS(q[5], &t32, &t48);
     iiwa14_real_t t62, t55;
     IIWA14_SINCOS(q[6], &t62, &t55);
-    const iiwa14_real_t t1 = t0 * dq[0];
-    const iiwa14_real_t t4 = t2 * t1 - t3 * dq[1];
+    const iiwa14_real_t t1 = t0 * dq[0]; /* link j2: motion */
+    const iiwa14_real_t t4 = t2 * t1 - t3 * dq[1]; /* link j3: motion */
     const iiwa14_real_t t5 = t3 * t1 + t2 * dq[1];
     const iiwa14_real_t t6 = t4 * t5;
-    const iiwa14_real_t t7 = dq[1] * t1;
-    const iiwa14_real_t t8 = t7 - t6;
-    const iiwa14_real_t t11 = t10 * dq[0];
+    const iiwa14_real_t t7 = dq[1] * t1; /* link j2: motion */
+    const iiwa14_real_t t8 = t7 - t6; /* link j4: motion */
+    const iiwa14_real_t t11 = t10 * dq[0]; /* link j2: motion */
     const iiwa14_real_t t12 = t1 * t11;
     const iiwa14_real_t t13 = dq[1] * t11;
     const iiwa14_real_t t14 = IIWA14_C(2.0) * t13;
-    const iiwa14_real_t t15 = t3 * t12 + t2 * t14;
+    const iiwa14_real_t t15 = t3 * t12 + t2 * t14; /* link j3: motion */
     const iiwa14_real_t t16 = dq[2] + t11;
     const iiwa14_real_t t17 = t5 * t16;
     const iiwa14_real_t t18 = t15 - t17;
-    const iiwa14_real_t t19 = t18 - t17;
+    const iiwa14_real_t t19 = t18 - t17; /* link j4: motion */
     const iiwa14_real_t t21 = t20 * t19 - t9 * t8;
     const iiwa14_real_t t22 = t9 * t4 - t20 * t16;
     const iiwa14_real_t t23 = dq[3] - t5;
     const iiwa14_real_t t24 = t22 * t23;
     const iiwa14_real_t t25 = t21 + t24;
-    const iiwa14_real_t t28 = t26 * t22 + t27 * t23;
+    const iiwa14_real_t t28 = t26 * t22 + t27 * t23; /* link j5: motion */
     const iiwa14_real_t t29 = t26 * t23 - t27 * t22;
     const iiwa14_real_t t30 = t28 * t29;
-    const iiwa14_real_t t31 = t25 - t30;
-    const iiwa14_real_t t33 = t2 * t12 - t3 * t14;
+    const iiwa14_real_t t31 = t25 - t30; /* link j6: motion */
+    const iiwa14_real_t t33 = t2 * t12 - t3 * t14; /* link j3: motion */
     const iiwa14_real_t t34 = t4 * t16;
     const iiwa14_real_t t35 = t33 - t34;
-    const iiwa14_real_t t36 = t20 * t4 + t9 * t16;
+    const iiwa14_real_t t36 = t20 * t4 + t9 * t16; /* link j4: motion */
     const iiwa14_real_t t37 = t22 * t36;
-    const iiwa14_real_t t38 = t35 + t37;
-    const iiwa14_real_t t39 = t20 * t8 + t9 * t19;
+    const iiwa14_real_t t38 = t35 + t37; /* link j5: motion */
+    const iiwa14_real_t t39 = t20 * t8 + t9 * t19; /* link j4: motion */
     const iiwa14_real_t t40 = t36 * t23;
     const iiwa14_real_t t41 = t39 - t40;
-    const iiwa14_real_t t42 = t41 - t40;
+    const iiwa14_real_t t42 = t41 - t40; /* link j5: motion */
     const iiwa14_real_t t43 = t27 * t38 + t26 * t42;
     const iiwa14_real_t t44 = dq[4] + t36;
     const iiwa14_real_t t45 = t29 * t44;
     const iiwa14_real_t t46 = t43 + t45;
-    const iiwa14_real_t t47 = t45 + t46;
+    const iiwa14_real_t t47 = t45 + t46; /* link j6: motion */
     const iiwa14_real_t t49 = t32 * t31 + t48 * t47;
     const iiwa14_real_t t50 = t48 * t44 - t32 * t28;
     const iiwa14_real_t t51 = t29 - dq[5];
     const iiwa14_real_t t52 = t50 * t51;
     const iiwa14_real_t t53 = t49 - t52;
-    const iiwa14_real_t t54 = t53 - t52;
-    const iiwa14_real_t t56 = t27 * t42 - t26 * t38;
+    const iiwa14_real_t t54 = t53 - t52; /* link j7: motion */
+    const iiwa14_real_t t56 = t27 * t42 - t26 * t38; /* link j5: motion */
     const iiwa14_real_t t57 = t28 * t44;
     const iiwa14_real_t t58 = t56 + t57;
-    const iiwa14_real_t t59 = t48 * t28 + t32 * t44;
+    const iiwa14_real_t t59 = t48 * t28 + t32 * t44; /* link j6: motion */
     const iiwa14_real_t t60 = t59 * t50;
-    const iiwa14_real_t t61 = t60 - t58;
+    const iiwa14_real_t t61 = t60 - t58; /* link j7: motion */
     const iiwa14_real_t t63 = t62 * t61 + t55 * t54;
     const iiwa14_real_t t64 = t62 * t59 - t55 * t51;
     const iiwa14_real_t t65 = dq[6] + t50;
@@ -187,169 +187,208 @@ int iiwa14_bias(
     const iiwa14_real_t t68 = t62 * t54 - t55 * t61;
     const iiwa14_real_t t69 = t55 * t59 + t62 * t51;
     const iiwa14_real_t t70 = t69 * t65;
-    const iiwa14_real_t t71 = t70 + (t68 + t70);
-    const iiwa14_real_t t72 = t48 * t31 - t32 * t47;
+    const iiwa14_real_t t71 = t70 + (t68 + t70); /* link j7: force and moment */
+    const iiwa14_real_t t72 = t48 * t31 - t32 * t47; /* link j6: motion */
     const iiwa14_real_t t73 = t59 * t51;
     const iiwa14_real_t t74 = t72 + t73;
-    const iiwa14_real_t t75 = t69 * t64;
-    const iiwa14_real_t t76 = t75 - t74;
+    const iiwa14_real_t t75 = t69 * t64; /* link j7: motion */
+    const iiwa14_real_t t76 = t75 - t74; /* link j7: force and moment */
     const iiwa14_real_t t77 = parameters[XX7R] * t67 + parameters[ZZ7] * t66 + parameters[XY7] * t71
         - parameters[XZ7R] * t76;
-    const iiwa14_real_t t78 = t64 * t64;
+    const iiwa14_real_t t78 = t64 * t64; /* link j7: motion */
     const iiwa14_real_t t79 = t65 * t65;
-    const iiwa14_real_t t80 = IIWA14_C(9.81) * t0;
-    const iiwa14_real_t t81 = t80 + IIWA14_C(0.42) * t12;
+    const iiwa14_real_t t80 = IIWA14_C(9.81) * t0; /* link j2: motion */
+    const iiwa14_real_t t81 = t80 + IIWA14_C(0.42) * t12; /* link j3: motion */
     const iiwa14_real_t t82 = IIWA14_C(0.84) * t13;
     const iiwa14_real_t t83 = t2 * t81 - t3 * t82;
-    const iiwa14_real_t t84 = t1 * t1;
+    const iiwa14_real_t t84 = t1 * t1; /* link j2: motion */
     const iiwa14_real_t t85 = dq[1] * dq[1];
     const iiwa14_real_t t86 = IIWA14_C(-9.81) * t10;
-    const iiwa14_real_t t87 = t86 + IIWA14_C(0.42) * (t85 + t84);
-    const iiwa14_real_t t88 = t9 * t83 + t20 * t87;
-    const iiwa14_real_t t89 = t88 + IIWA14_C(0.4) * t38;
-    const iiwa14_real_t t90 = t3 * t81 + t2 * t82;
-    const iiwa14_real_t t91 = t90 - IIWA14_C(-0.4) * t42;
+    const iiwa14_real_t t87 = t86 + IIWA14_C(0.42) * (t85 + t84); /* link j3: motion */
+    const iiwa14_real_t t88 = t9 * t83 + t20 * t87; /* link j4: motion */
+    const iiwa14_real_t t89 = t88 + IIWA14_C(0.4) * t38; /* link j5: motion */
+    const iiwa14_real_t t90 = t3 * t81 + t2 * t82; /* link j3: motion */
+    const iiwa14_real_t t91 = t90 - IIWA14_C(-0.4) * t42; /* link j5: motion */
     const iiwa14_real_t t92 = t26 * t89 - t27 * t91;
-    const iiwa14_real_t t93 = t22 * t22;
+    const iiwa14_real_t t93 = t22 * t22; /* link j4: motion */
     const iiwa14_real_t t94 = t23 * t23;
-    const iiwa14_real_t t95 = t93 + t94;
-    const iiwa14_real_t t96 = t20 * t83 - t9 * t87;
-    const iiwa14_real_t t97 = t96 + IIWA14_C(-0.4) * t95;
-    const iiwa14_real_t t98 = t32 * t92 - t48 * t97;
+    const iiwa14_real_t t95 = t93 + t94; /* link j5: motion */
+    const iiwa14_real_t t96 = t20 * t83 - t9 * t87; /* link j4: motion */
+    const iiwa14_real_t t97 = t96 + IIWA14_C(-0.4) * t95; /* link j5: motion */
+    const iiwa14_real_t t98 = t32 * t92 - t48 * t97; /* link j6: motion */
+    /* link j7: force and moment */
     const iiwa14_real_t t99 = t77 + parameters[YZ7R] * (t78 - t79) - parameters[MY7] * t98;
     const iiwa14_real_t t100 = t66 + t67;
     const iiwa14_real_t t101 = t74 + t75;
     const iiwa14_real_t t102 = t70 * (parameters[ZZ7] - parameters[XX7R]) + parameters[XY7] * t100
         + parameters[YZ7R] * t101;
-    const iiwa14_real_t t103 = t69 * t69;
+    const iiwa14_real_t t103 = t69 * t69; /* link j7: motion */
+    /* link j7: force and moment */
     const iiwa14_real_t t104 = t102 + parameters[XZ7R] * (t79 - t103) + parameters[MX7] * t98;
-    const iiwa14_real_t t105 = t73 + t74;
+    const iiwa14_real_t t105 = t73 + t74; /* link j7: motion */
     const iiwa14_real_t t106 = t58 + t60;
+    /* link j6: force and moment */
     const iiwa14_real_t t107 = parameters[ZZ6R] * t52 - parameters[XX6R] * t53 - parameters[XY6] * t105
         + parameters[XZ6] * t106;
-    const iiwa14_real_t t108 = t50 * t50;
+    const iiwa14_real_t t108 = t50 * t50; /* link j6: motion */
     const iiwa14_real_t t109 = t51 * t51;
-    const iiwa14_real_t t110 = t27 * t89 + t26 * t91;
+    const iiwa14_real_t t110 = t27 * t89 + t26 * t91; /* link j5: motion */
+    /* link j7: what it passes on */
     const iiwa14_real_t t111 = t107 + parameters[YZ6] * (t108 - t109) + parameters[MY6R] * t110 - (t62 * t104
         - t55 * t99);
+    /* link j7: force and moment */
     const iiwa14_real_t t112 = parameters[ZZ7] * t74 + parameters[XX7R] * t75 + parameters[YZ7R] * t68
         - parameters[XZ7R] * t63;
-    const iiwa14_real_t t113 = t48 * t92 + t32 * t97;
+    const iiwa14_real_t t113 = t48 * t92 + t32 * t97; /* link j6: motion */
+    /* link j7: force and moment */
     const iiwa14_real_t t114 = parameters[MX7] * (t62 * t113 + t55 * t110) + parameters[MY7] * (t55 * t113
         - t62 * t110);
     const iiwa14_real_t t115 = t112 + parameters[XY7] * (t103 - t78) + t114;
+    /* link j6: force and moment */
     const iiwa14_real_t t116 = parameters[XY6] * t54 - t73 * (parameters[XX6R] - parameters[ZZ6R])
         + parameters[YZ6] * t61;
-    const iiwa14_real_t t117 = t59 * t59;
+    const iiwa14_real_t t117 = t59 * t59; /* link j6: motion */
+    /* link j7: what it passes on */
     const iiwa14_real_t t118 = t116 + parameters[XZ6] * (t117 - t109) + parameters[MX6] * t110 + t115;
-    const iiwa14_real_t t119 = t57 + t58;
+    const iiwa14_real_t t119 = t57 + t58; /* link j6: motion */
     const iiwa14_real_t t120 = t25 + t30;
+    /* link j5: force and moment */
     const iiwa14_real_t t121 = parameters[XY5] * t119 - (parameters[XX5R] * t46 + parameters[ZZ5R] * t45)
         + parameters[XZ5] * t120;
-    const iiwa14_real_t t122 = t29 * t29;
+    const iiwa14_real_t t122 = t29 * t29; /* link j5: motion */
     const iiwa14_real_t t123 = t44 * t44;
+    /* link j6: what it passes on */
     const iiwa14_real_t t124 = t121 + parameters[YZ5] * (t122 - t123) + parameters[MY5R] * t97 + (t48 * t111
         + t32 * t118);
+    /* link j6: force and moment */
     const iiwa14_real_t t125 = parameters[ZZ6R] * t58 - parameters[XX6R] * t60 - parameters[YZ6] * t72
         - parameters[XZ6] * t49;
     const iiwa14_real_t t126 = t125 + parameters[XY6] * (t117 - t108) + (parameters[MX6] * t98
         + parameters[MY6R] * t113);
-    const iiwa14_real_t t127 = t126 + (t62 * t99 + t55 * t104);
+    const iiwa14_real_t t127 = t126 + (t62 * t99 + t55 * t104); /* link j7: what it passes on */
+    /* link j5: force and moment */
     const iiwa14_real_t t128 = t57 * (parameters[XX5R] - parameters[ZZ5R]) + parameters[XY5] * t47
         - parameters[YZ5] * t31;
-    const iiwa14_real_t t129 = t28 * t28;
+    const iiwa14_real_t t129 = t28 * t28; /* link j5: motion */
+    /* link j6: what it passes on */
     const iiwa14_real_t t130 = t128 + parameters[XZ5] * (t129 - t123) + parameters[MX5] * t97 - t127;
+    /* link j7: force and moment */
     const iiwa14_real_t t131 = parameters[MX7] * (t78 + t79) + parameters[MY7] * t101;
     const iiwa14_real_t t132 = parameters[MX7] * t76 + parameters[MY7] * (t103 + t79);
+    /* link j7: what it passes on */
     const iiwa14_real_t t133 = parameters[MY6R] * t61 - parameters[MX6] * (t108 + t109) + (t62 * t132
         - t55 * t131);
     const iiwa14_real_t t134 = parameters[MX6] * t106 - parameters[MY6R] * (t117 + t109)
         + (parameters[MX7] * t71 - parameters[MY7] * t100);
+    /* link j6: what it passes on */
     const iiwa14_real_t t135 = parameters[MX5] * (t122 + t123) + parameters[MY5R] * t31 + (t32 * t134
         - t48 * t133);
+    /* link j7: what it passes on */
     const iiwa14_real_t t136 = parameters[MY6R] * t54 - parameters[MX6] * t105 + (t62 * t131 + t55 * t132);
+    /* link j6: what it passes on */
     const iiwa14_real_t t137 = parameters[MY5R] * (t129 + t123) - parameters[MX5] * t120 + t136;
-    const iiwa14_real_t t138 = t27 * t135 + t26 * t137;
-    const iiwa14_real_t t139 = t24 + t25;
+    const iiwa14_real_t t138 = t27 * t135 + t26 * t137; /* link j5: what it passes on */
+    const iiwa14_real_t t139 = t24 + t25; /* link j5: motion */
     const iiwa14_real_t t140 = t35 - t37;
+    /* link j4: force and moment */
     const iiwa14_real_t t141 = parameters[ZZ4R] * t40 - parameters[XX4R] * t41 + parameters[XY4] * t139
         + parameters[XZ4] * t140;
-    const iiwa14_real_t t142 = t36 * t36;
+    const iiwa14_real_t t142 = t36 * t36; /* link j4: motion */
+    /* link j5: what it passes on */
     const iiwa14_real_t t143 = t141 + parameters[YZ4] * (t142 - t94) - parameters[MY4R] * t90 + (t26 * t124
         + t27 * t130 + IIWA14_C(0.4) * t138);
+    /* link j5: force and moment */
     const iiwa14_real_t t144 = parameters[ZZ5R] * t25 - parameters[XX5R] * t30 + parameters[YZ5] * t56
         - parameters[XZ5] * t43;
     const iiwa14_real_t t145 = t144 + parameters[XY5] * (t129 - t122) + (parameters[MX5] * t110
         + parameters[MY5R] * t92);
-    const iiwa14_real_t t146 = t145 + (t48 * t118 - t32 * t111);
+    const iiwa14_real_t t146 = t145 + (t48 * t118 - t32 * t111); /* link j6: what it passes on */
+    /* link j4: force and moment */
     const iiwa14_real_t t147 = t24 * (parameters[ZZ4R] - parameters[XX4R]) - parameters[XY4] * t42
         + parameters[YZ4] * t38;
+    /* link j5: what it passes on */
     const iiwa14_real_t t148 = t147 + parameters[XZ4] * (t94 - t93) + parameters[MX4] * t90 + t146;
+    /* link j3: force and moment */
     const iiwa14_real_t t149 = parameters[XX3R] * t18 - parameters[ZZ3R] * t17 - parameters[XY3] * (t34
         - t35);
-    const iiwa14_real_t t150 = t7 + t6;
-    const iiwa14_real_t t151 = t5 * t5;
+    const iiwa14_real_t t150 = t7 + t6; /* link j4: motion */
+    const iiwa14_real_t t151 = t5 * t5; /* link j3: motion */
     const iiwa14_real_t t152 = t16 * t16;
+    /* link j3: force and moment */
     const iiwa14_real_t t153 = t149 + parameters[XZ3] * t150 - parameters[YZ3] * (t151 - t152)
         + parameters[MY3R] * t87;
-    const iiwa14_real_t t154 = t153 + (t20 * t148 - t9 * t143);
-    const iiwa14_real_t t155 = t27 * t137 - t26 * t135;
+    const iiwa14_real_t t154 = t153 + (t20 * t148 - t9 * t143); /* link j4: what it passes on */
+    const iiwa14_real_t t155 = t27 * t137 - t26 * t135; /* link j5: what it passes on */
+    /* link j4: force and moment */
     const iiwa14_real_t t156 = parameters[XZ4] * t39 - (parameters[ZZ4R] * t35 + parameters[XX4R] * t37
         + parameters[YZ4] * t21);
     const iiwa14_real_t t157 = t156 + parameters[XY4] * (t142 - t93) - (parameters[MX4] * t96
         + parameters[MY4R] * t88);
+    /* link j5: what it passes on */
     const iiwa14_real_t t158 = t157 + (t27 * t124 - t26 * t130 + IIWA14_C(0.4) * t155);
+    /* link j3: force and moment */
     const iiwa14_real_t t159 = t34 * (parameters[ZZ3R] - parameters[XX3R]) - parameters[XY3] * t19
         - parameters[YZ3] * t8;
-    const iiwa14_real_t t160 = t4 * t4;
+    const iiwa14_real_t t160 = t4 * t4; /* link j3: motion */
+    /* link j4: what it passes on */
     const iiwa14_real_t t161 = t159 + parameters[XZ3] * (t152 - t160) + parameters[MX3] * t87 + t158;
     const iiwa14_real_t t162 = t9 * (t155 - (parameters[MX4] * (t142 + t94) + parameters[MY4R] * t38));
+    /* link j6: what it passes on */
     const iiwa14_real_t t163 = parameters[MX5] * t119 + parameters[MY5R] * t47 + (t32 * t133 + t48 * t134);
+    /* link j4: what it passes on */
     const iiwa14_real_t t164 = t162 + t20 * (parameters[MY4R] * t95 - parameters[MX4] * t140 + t163);
     const iiwa14_real_t t165 = parameters[MY3R] * t8 - parameters[MX3] * (t151 + t152) + t164;
     const iiwa14_real_t t166 = parameters[MX3] * t150 + parameters[MY3R] * (t160 + t152)
         - (parameters[MX4] * t139 + parameters[MY4R] * t42 - t138);
+    /* link j3: what it passes on */
     const iiwa14_real_t t167 = t2 * t154 + t3 * t161 + IIWA14_C(0.42) * (t3 * t165 - t2 * t166);
+    /* link j2: force and moment */
     const iiwa14_real_t t168 = parameters[XX2R] * t13 + parameters[ZZ2R] * t13
         + parameters[XY2] * (IIWA14_C(-2.0) * t7);
-    const iiwa14_real_t t169 = t11 * t11;
+    const iiwa14_real_t t169 = t11 * t11; /* link j2: motion */
+    /* link j3: what it passes on */
     const iiwa14_real_t t170 = t168 - parameters[XZ2] * t12 + parameters[YZ2] * (t85 - t169) + t167;
+    /* link j3: force and moment */
     const iiwa14_real_t t171 = parameters[XX3R] * t6 - parameters[ZZ3R] * t7 - parameters[YZ3] * t33
         - parameters[XZ3] * t15;
     const iiwa14_real_t t172 = t171 + parameters[XY3] * (t160 - t151) + (parameters[MX3] * t90
         + parameters[MY3R] * t83);
-    const iiwa14_real_t t173 = t172 + (t20 * t143 + t9 * t148);
+    const iiwa14_real_t t173 = t172 + (t20 * t143 + t9 * t148); /* link j4: what it passes on */
+    /* link j2: force and moment */
     const iiwa14_real_t t174 = t7 * (parameters[XX2R] - parameters[ZZ2R]) + parameters[XY2] * t14
         + parameters[YZ2] * t12;
+    /* link j2: what it passes on */
     const iiwa14_real_t t175 = t0 * t170 + t10 * (t174 + parameters[XZ2] * (t84 - t85) + t173);
-    const iiwa14_real_t t176 = iiwa14_sign(dq[0]);
+    const iiwa14_real_t t176 = iiwa14_sign(dq[0]); /* joint j1: coulomb_friction */
     const iiwa14_real_t t177 = IIWA14_C(10.0) * (parameters[FV1] * (IIWA14_C(160.0) * dq[0])
         + parameters[FC1] * t176) + IIWA14_C(0.0625) * t175;
     out[0] = t177;
+    /* link j3: what it passes on */
     const iiwa14_real_t t178 = t2 * t161 - t3 * t154 + IIWA14_C(0.42) * (t2 * t165 + t3 * t166);
+    /* link j2: force and moment */
     const iiwa14_real_t t179 = parameters[XY2] * (t84 - t169) - parameters[XX2R] * t12
         + (parameters[MX2] * t86 + parameters[MY2R] * t80);
-    const iiwa14_real_t t180 = iiwa14_sign(dq[1]);
+    const iiwa14_real_t t180 = iiwa14_sign(dq[1]); /* joint j2: coulomb_friction */
     const iiwa14_real_t t181 = IIWA14_C(10.0) * (parameters[FV2] * (IIWA14_C(160.0) * dq[1])
         + parameters[FC2] * t180) + IIWA14_C(0.0625) * (t179 + t178);
     out[1] = t181;
-    const iiwa14_real_t t182 = iiwa14_sign(dq[2]);
+    const iiwa14_real_t t182 = iiwa14_sign(dq[2]); /* joint j3: coulomb_friction */
     const iiwa14_real_t t183 = IIWA14_C(10.0) * (parameters[FV3] * (IIWA14_C(160.0) * dq[2])
         + parameters[FC3] * t182) + IIWA14_C(0.0625) * t173;
     out[2] = t183;
-    const iiwa14_real_t t184 = iiwa14_sign(dq[3]);
+    const iiwa14_real_t t184 = iiwa14_sign(dq[3]); /* joint j4: coulomb_friction */
     const iiwa14_real_t t185 = IIWA14_C(10.0) * (parameters[FV4] * (IIWA14_C(160.0) * dq[3])
         + parameters[FC4] * t184) + IIWA14_C(-0.0625) * t158;
     out[3] = t185;
-    const iiwa14_real_t t186 = iiwa14_sign(dq[4]);
+    const iiwa14_real_t t186 = iiwa14_sign(dq[4]); /* joint j5: coulomb_friction */
     const iiwa14_real_t t187 = IIWA14_C(12.5) * (parameters[FV5] * (IIWA14_C(1.0e2) * dq[4])
         + parameters[FC5] * t186) + IIWA14_C(0.125) * t146;
     out[4] = t187;
-    const iiwa14_real_t t188 = iiwa14_sign(dq[5]);
+    const iiwa14_real_t t188 = iiwa14_sign(dq[5]); /* joint j6: coulomb_friction */
     const iiwa14_real_t t189 = IIWA14_C(20.0) * (parameters[FV6] * (IIWA14_C(160.0) * dq[5])
         + parameters[FC6] * t188) + IIWA14_C(0.125) * t127;
     out[5] = t189;
-    const iiwa14_real_t t190 = iiwa14_sign(dq[6]);
+    const iiwa14_real_t t190 = iiwa14_sign(dq[6]); /* joint j7: coulomb_friction */
     const iiwa14_real_t t191 = IIWA14_C(20.0) * (parameters[FV7] * (IIWA14_C(160.0) * dq[6])
         + parameters[FC7] * t190) + IIWA14_C(0.125) * t115;
     out[6] = t191;

@@ -6,7 +6,7 @@
  * Arm iiwa14, description 4f01a5afe35e97fd.
  * SPDX-License-Identifier: 0BSD
  *
- * Operations: 704 (369 mul, 335 add, 0 neg), 12 trig, 7 other.
+ * Operations: 704 (369 mul, 335 add, 0 neg), 12 trig, 7 other calls (sign, select and the like).
  *
  * @param[in]   q           [7]   [rad]    joint coordinates; norm at most 10000
  * @param[in]   dq          [7]   [rad/s]  joint velocities; norm at most 100000
@@ -119,11 +119,11 @@
  */
 #include "iiwa14_private.h"
 
-#if IIWA14_GENERATION != 0x27C72E36UL
+#if IIWA14_GENERATION != 0x1E31C9F2UL
 #error "iiwa14.h and iiwa14_bias_standard.c are of different generations: generate the arm again"
 #endif
 
-int iiwa14_bias_standard(
+iiwa14_status_t iiwa14_bias_standard(
     const iiwa14_real_t q[IIWA14_N_JOINTS],
     const iiwa14_real_t dq[IIWA14_N_JOINTS],
     const iiwa14_real_t parameters[IIWA14_N_STANDARD_PARAMETERS],
@@ -134,7 +134,7 @@ int iiwa14_bias_standard(
         XX5, XY5, XZ5, YY5, YZ5, ZZ5, MX5, MY5, MZ5, M5, XX6, XY6, XZ6, YY6, YZ6, ZZ6, MX6, MY6, MZ6, M6, XX7,
         XY7, XZ7, YY7, YZ7, ZZ7, MX7, MY7, MZ7, M7, FV1, FC1, IA1, FV2, FC2, IA2, FV3, FC3, IA3, FV4, FC4,
         IA4, FV5, FC5, IA5, FV6, FC6, IA6, FV7, FC7, IA7 };
-    int status = IIWA14_STATUS_OK;
+    iiwa14_status_t status = IIWA14_STATUS_OK;
 
     if (!iiwa14_within_joints(q, IIWA14_C(1.0e8))
         || !iiwa14_within_joints(dq, IIWA14_C(1.0e10))
@@ -158,57 +158,57 @@ int iiwa14_bias_standard(
     IIWA14_SINCOS(q[5], &t32, &t48);
     iiwa14_real_t t62, t55;
     IIWA14_SINCOS(q[6], &t62, &t55);
-    const iiwa14_real_t t1 = t0 * dq[0];
-    const iiwa14_real_t t4 = t2 * t1 - t3 * dq[1];
-    const iiwa14_real_t t7 = t6 * dq[0];
-    const iiwa14_real_t t8 = dq[2] + t7;
-    const iiwa14_real_t t10 = t9 * t8 - t5 * t4;
-    const iiwa14_real_t t12 = t3 * t1 + t2 * dq[1];
-    const iiwa14_real_t t13 = dq[3] - t12;
-    const iiwa14_real_t t15 = t14 * t13 - t11 * t10;
+    const iiwa14_real_t t1 = t0 * dq[0]; /* link j2: motion */
+    const iiwa14_real_t t4 = t2 * t1 - t3 * dq[1]; /* link j3: motion */
+    const iiwa14_real_t t7 = t6 * dq[0]; /* link j2: motion */
+    const iiwa14_real_t t8 = dq[2] + t7; /* link j3: motion */
+    const iiwa14_real_t t10 = t9 * t8 - t5 * t4; /* link j4: motion */
+    const iiwa14_real_t t12 = t3 * t1 + t2 * dq[1]; /* link j3: motion */
+    const iiwa14_real_t t13 = dq[3] - t12; /* link j4: motion */
+    const iiwa14_real_t t15 = t14 * t13 - t11 * t10; /* link j5: motion */
     const iiwa14_real_t t16 = t14 * t10 + t11 * t13;
     const iiwa14_real_t t17 = t15 * t16;
-    const iiwa14_real_t t18 = t4 * t12;
-    const iiwa14_real_t t19 = dq[1] * t1;
-    const iiwa14_real_t t20 = t18 - t19;
-    const iiwa14_real_t t21 = t12 * t8;
-    const iiwa14_real_t t22 = t1 * t7;
+    const iiwa14_real_t t18 = t4 * t12; /* link j3: motion */
+    const iiwa14_real_t t19 = dq[1] * t1; /* link j2: motion */
+    const iiwa14_real_t t20 = t18 - t19; /* link j4: motion */
+    const iiwa14_real_t t21 = t12 * t8; /* link j3: motion */
+    const iiwa14_real_t t22 = t1 * t7; /* link j2: motion */
     const iiwa14_real_t t23 = dq[1] * t7;
     const iiwa14_real_t t24 = IIWA14_C(2.0) * t23;
-    const iiwa14_real_t t25 = t3 * t22 + t2 * t24;
+    const iiwa14_real_t t25 = t3 * t22 + t2 * t24; /* link j3: motion */
     const iiwa14_real_t t26 = t21 - t25;
-    const iiwa14_real_t t27 = t21 + t26;
+    const iiwa14_real_t t27 = t21 + t26; /* link j4: motion */
     const iiwa14_real_t t28 = t5 * t20 - t9 * t27;
     const iiwa14_real_t t29 = t10 * t13;
     const iiwa14_real_t t30 = t28 - t29;
-    const iiwa14_real_t t31 = t30 - t17;
-    const iiwa14_real_t t33 = t9 * t4 + t5 * t8;
+    const iiwa14_real_t t31 = t30 - t17; /* link j6: motion */
+    const iiwa14_real_t t33 = t9 * t4 + t5 * t8; /* link j4: motion */
     const iiwa14_real_t t34 = t10 * t33;
-    const iiwa14_real_t t35 = t4 * t8;
+    const iiwa14_real_t t35 = t4 * t8; /* link j3: motion */
     const iiwa14_real_t t36 = t3 * t24 - t2 * t22;
     const iiwa14_real_t t37 = t35 + t36;
-    const iiwa14_real_t t38 = t34 + t37;
-    const iiwa14_real_t t39 = t9 * t20 + t5 * t27;
+    const iiwa14_real_t t38 = t34 + t37; /* link j5: motion */
+    const iiwa14_real_t t39 = t9 * t20 + t5 * t27; /* link j4: motion */
     const iiwa14_real_t t40 = t33 * t13;
     const iiwa14_real_t t41 = t40 + t39;
-    const iiwa14_real_t t42 = t40 + t41;
+    const iiwa14_real_t t42 = t40 + t41; /* link j5: motion */
     const iiwa14_real_t t43 = t14 * t38 + t11 * t42;
     const iiwa14_real_t t44 = dq[4] + t33;
     const iiwa14_real_t t45 = t16 * t44;
     const iiwa14_real_t t46 = t45 - t43;
-    const iiwa14_real_t t47 = t45 + t46;
+    const iiwa14_real_t t47 = t45 + t46; /* link j6: motion */
     const iiwa14_real_t t49 = t32 * t31 + t48 * t47;
     const iiwa14_real_t t50 = t48 * t44 - t32 * t15;
     const iiwa14_real_t t51 = t16 - dq[5];
     const iiwa14_real_t t52 = t50 * t51;
     const iiwa14_real_t t53 = t49 - t52;
-    const iiwa14_real_t t54 = t53 - t52;
-    const iiwa14_real_t t56 = t11 * t38 - t14 * t42;
+    const iiwa14_real_t t54 = t53 - t52; /* link j7: motion */
+    const iiwa14_real_t t56 = t11 * t38 - t14 * t42; /* link j5: motion */
     const iiwa14_real_t t57 = t15 * t44;
     const iiwa14_real_t t58 = t57 + t56;
-    const iiwa14_real_t t59 = t48 * t15 + t32 * t44;
+    const iiwa14_real_t t59 = t48 * t15 + t32 * t44; /* link j6: motion */
     const iiwa14_real_t t60 = t59 * t50;
-    const iiwa14_real_t t61 = t58 - t60;
+    const iiwa14_real_t t61 = t58 - t60; /* link j7: motion */
     const iiwa14_real_t t63 = t62 * t61 - t55 * t54;
     const iiwa14_real_t t64 = t62 * t59 - t55 * t51;
     const iiwa14_real_t t65 = dq[6] + t50;
@@ -218,211 +218,259 @@ int iiwa14_bias_standard(
     const iiwa14_real_t t69 = t55 * t59 + t62 * t51;
     const iiwa14_real_t t70 = t69 * t65;
     const iiwa14_real_t t71 = t70 + t68;
-    const iiwa14_real_t t72 = t70 + t71;
+    const iiwa14_real_t t72 = t70 + t71; /* link j7: force and moment */
     const iiwa14_real_t t73 = parameters[XX7] * t67 + t66 * (parameters[ZZ7] - parameters[YY7])
         + parameters[XY7] * t72;
-    const iiwa14_real_t t74 = t48 * t31 - t32 * t47;
+    const iiwa14_real_t t74 = t48 * t31 - t32 * t47; /* link j6: motion */
     const iiwa14_real_t t75 = t59 * t51;
     const iiwa14_real_t t76 = t75 + t74;
-    const iiwa14_real_t t77 = t69 * t64;
-    const iiwa14_real_t t78 = t77 - t76;
-    const iiwa14_real_t t79 = t64 * t64;
+    const iiwa14_real_t t77 = t69 * t64; /* link j7: motion */
+    const iiwa14_real_t t78 = t77 - t76; /* link j7: force and moment */
+    const iiwa14_real_t t79 = t64 * t64; /* link j7: motion */
     const iiwa14_real_t t80 = t65 * t65;
-    const iiwa14_real_t t81 = t1 * t1;
+    const iiwa14_real_t t81 = t1 * t1; /* link j2: motion */
     const iiwa14_real_t t82 = dq[1] * dq[1];
     const iiwa14_real_t t83 = IIWA14_C(-9.81) * t6;
-    const iiwa14_real_t t84 = t83 + IIWA14_C(0.42) * (t81 + t82);
-    const iiwa14_real_t t85 = IIWA14_C(9.81) * t0;
-    const iiwa14_real_t t86 = IIWA14_C(-0.42) * t22 - t85;
+    const iiwa14_real_t t84 = t83 + IIWA14_C(0.42) * (t81 + t82); /* link j3: motion */
+    const iiwa14_real_t t85 = IIWA14_C(9.81) * t0; /* link j2: motion */
+    const iiwa14_real_t t86 = IIWA14_C(-0.42) * t22 - t85; /* link j3: motion */
     const iiwa14_real_t t87 = IIWA14_C(0.84) * t23;
     const iiwa14_real_t t88 = t2 * t86 + t3 * t87;
-    const iiwa14_real_t t89 = t5 * t88 - t9 * t84;
-    const iiwa14_real_t t90 = t89 - IIWA14_C(-0.4) * t38;
-    const iiwa14_real_t t91 = t3 * t86 - t2 * t87;
-    const iiwa14_real_t t92 = t91 + IIWA14_C(0.4) * t42;
+    const iiwa14_real_t t89 = t5 * t88 - t9 * t84; /* link j4: motion */
+    const iiwa14_real_t t90 = t89 - IIWA14_C(-0.4) * t38; /* link j5: motion */
+    const iiwa14_real_t t91 = t3 * t86 - t2 * t87; /* link j3: motion */
+    const iiwa14_real_t t92 = t91 + IIWA14_C(0.4) * t42; /* link j5: motion */
     const iiwa14_real_t t93 = t14 * t92 - t11 * t90;
-    const iiwa14_real_t t94 = t10 * t10;
+    const iiwa14_real_t t94 = t10 * t10; /* link j4: motion */
     const iiwa14_real_t t95 = t13 * t13;
-    const iiwa14_real_t t96 = t94 + t95;
-    const iiwa14_real_t t97 = t5 * t84 + t9 * t88;
-    const iiwa14_real_t t98 = IIWA14_C(0.4) * t96 + t97;
-    const iiwa14_real_t t99 = t32 * t98 - t48 * t93;
-    const iiwa14_real_t t100 = t99 + IIWA14_C(0.126) * t61;
-    const iiwa14_real_t t101 = t14 * t90 + t11 * t92;
-    const iiwa14_real_t t102 = t101 + IIWA14_C(-0.126) * t54;
+    const iiwa14_real_t t96 = t94 + t95; /* link j5: motion */
+    const iiwa14_real_t t97 = t5 * t84 + t9 * t88; /* link j4: motion */
+    const iiwa14_real_t t98 = IIWA14_C(0.4) * t96 + t97; /* link j5: motion */
+    const iiwa14_real_t t99 = t32 * t98 - t48 * t93; /* link j6: motion */
+    const iiwa14_real_t t100 = t99 + IIWA14_C(0.126) * t61; /* link j7: motion */
+    const iiwa14_real_t t101 = t14 * t90 + t11 * t92; /* link j5: motion */
+    const iiwa14_real_t t102 = t101 + IIWA14_C(-0.126) * t54; /* link j7: motion */
     const iiwa14_real_t t103 = t62 * t100 + t55 * t102;
-    const iiwa14_real_t t104 = t59 * t59;
+    const iiwa14_real_t t104 = t59 * t59; /* link j6: motion */
     const iiwa14_real_t t105 = t51 * t51;
-    const iiwa14_real_t t106 = t104 + t105;
-    const iiwa14_real_t t107 = t32 * t93 + t48 * t98;
-    const iiwa14_real_t t108 = IIWA14_C(0.126) * t106 + t107;
+    const iiwa14_real_t t106 = t104 + t105; /* link j7: motion */
+    const iiwa14_real_t t107 = t32 * t93 + t48 * t98; /* link j6: motion */
+    const iiwa14_real_t t108 = IIWA14_C(0.126) * t106 + t107; /* link j7: motion */
+    /* link j7: force and moment */
     const iiwa14_real_t t109 = t73 - parameters[XZ7] * t78 + (t79 - t80) * parameters[YZ7]
         + (parameters[MZ7] * t103 - parameters[MY7] * t108);
     const iiwa14_real_t t110 = t66 + t67;
     const iiwa14_real_t t111 = parameters[YY7] * t71 + t70 * (parameters[ZZ7] - parameters[XX7])
         + parameters[XY7] * t110;
     const iiwa14_real_t t112 = t77 + t76;
-    const iiwa14_real_t t113 = t69 * t69;
+    const iiwa14_real_t t113 = t69 * t69; /* link j7: motion */
     const iiwa14_real_t t114 = t55 * t100 - t62 * t102;
+    /* link j7: force and moment */
     const iiwa14_real_t t115 = t111 + parameters[YZ7] * t112 + (t80 - t113) * parameters[XZ7]
         + (parameters[MZ7] * t114 + parameters[MX7] * t108);
     const iiwa14_real_t t116 = (t79 + t80) * parameters[MX7] + parameters[MY7] * t112 - parameters[MZ7] * t68;
     const iiwa14_real_t t117 = parameters[M7] * t114 - t116;
     const iiwa14_real_t t118 = parameters[MX7] * t78 + (t113 + t80) * parameters[MY7] + parameters[MZ7] * t63;
     const iiwa14_real_t t119 = parameters[M7] * t103 + t118;
-    const iiwa14_real_t t120 = t55 * t119 - t62 * t117;
-    const iiwa14_real_t t121 = t75 + t76;
+    const iiwa14_real_t t120 = t55 * t119 - t62 * t117; /* link j7: what it passes on */
+    const iiwa14_real_t t121 = t75 + t76; /* link j7: motion */
+    /* link j6: force and moment */
     const iiwa14_real_t t122 = parameters[XX6] * t53 + t52 * (parameters[YY6] - parameters[ZZ6])
         + parameters[XY6] * t121;
-    const iiwa14_real_t t123 = t60 + t58;
-    const iiwa14_real_t t124 = t50 * t50;
+    const iiwa14_real_t t123 = t60 + t58; /* link j7: motion */
+    const iiwa14_real_t t124 = t50 * t50; /* link j6: motion */
+    /* link j6: force and moment */
     const iiwa14_real_t t125 = parameters[XZ6] * t123 - t122 + (t124 - t105) * parameters[YZ6]
         - (parameters[MY6] * t101 + parameters[MZ6] * t107);
+    /* link j7: what it passes on */
     const iiwa14_real_t t126 = t125 + (t55 * t109 - t62 * t115 - IIWA14_C(-0.126) * t120);
+    /* link j7: force and moment */
     const iiwa14_real_t t127 = parameters[ZZ7] * t76 + t77 * (parameters[XX7] - parameters[YY7])
         + parameters[YZ7] * t68;
     const iiwa14_real_t t128 = t127 + parameters[XZ7] * t63 + (t113 - t79) * parameters[XY7]
         - (parameters[MX7] * t103 + parameters[MY7] * t114);
+    /* link j6: force and moment */
     const iiwa14_real_t t129 = parameters[YY6] * t76 - t75 * (parameters[XX6] - parameters[ZZ6])
         + parameters[XY6] * t54;
     const iiwa14_real_t t130 = t129 - parameters[YZ6] * t61 + (t104 - t105) * parameters[XZ6]
         - (parameters[MZ6] * t99 + parameters[MX6] * t101);
-    const iiwa14_real_t t131 = t130 + t128;
-    const iiwa14_real_t t132 = t57 + t58;
+    const iiwa14_real_t t131 = t130 + t128; /* link j7: what it passes on */
+    const iiwa14_real_t t132 = t57 + t58; /* link j6: motion */
+    /* link j5: force and moment */
     const iiwa14_real_t t133 = parameters[XY5] * t132 - (parameters[XX5] * t46 + t45 * (parameters[ZZ5]
         - parameters[YY5]));
-    const iiwa14_real_t t134 = t17 + t30;
-    const iiwa14_real_t t135 = t16 * t16;
+    const iiwa14_real_t t134 = t17 + t30; /* link j6: motion */
+    const iiwa14_real_t t135 = t16 * t16; /* link j5: motion */
     const iiwa14_real_t t136 = t44 * t44;
+    /* link j5: force and moment */
     const iiwa14_real_t t137 = t133 + parameters[XZ5] * t134 + (t135 - t136) * parameters[YZ5]
         + (parameters[MZ5] * t101 - parameters[MY5] * t98);
-    const iiwa14_real_t t138 = t137 + (t48 * t126 + t32 * t131);
-    const iiwa14_real_t t139 = t55 * t117 + t62 * t119;
+    const iiwa14_real_t t138 = t137 + (t48 * t126 + t32 * t131); /* link j6: what it passes on */
+    const iiwa14_real_t t139 = t55 * t117 + t62 * t119; /* link j7: what it passes on */
+    /* link j6: force and moment */
     const iiwa14_real_t t140 = parameters[ZZ6] * t58 - t60 * (parameters[XX6] - parameters[YY6])
         - parameters[YZ6] * t74;
     const iiwa14_real_t t141 = t140 - parameters[XZ6] * t49 + (t104 - t124) * parameters[XY6]
         + (parameters[MX6] * t107 - parameters[MY6] * t99);
+    /* link j7: what it passes on */
     const iiwa14_real_t t142 = t141 + (t62 * t109 + t55 * t115 + IIWA14_C(0.126) * t139);
+    /* link j5: force and moment */
     const iiwa14_real_t t143 = parameters[YY5] * t58 - t57 * (parameters[XX5] - parameters[ZZ5])
         - parameters[XY5] * t47;
-    const iiwa14_real_t t144 = t15 * t15;
+    const iiwa14_real_t t144 = t15 * t15; /* link j5: motion */
+    /* link j5: force and moment */
     const iiwa14_real_t t145 = t143 + parameters[YZ5] * t31 - (t144 - t136) * parameters[XZ5]
         + (parameters[MX5] * t98 - parameters[MZ5] * t93);
-    const iiwa14_real_t t146 = t145 + t142;
+    const iiwa14_real_t t146 = t145 + t142; /* link j6: what it passes on */
+    /* link j6: force and moment */
     const iiwa14_real_t t147 = (t124 + t105) * parameters[MX6] + parameters[MY6] * t61
         + parameters[MZ6] * t74;
-    const iiwa14_real_t t148 = parameters[M6] * t99 - t147 + t139;
+    const iiwa14_real_t t148 = parameters[M6] * t99 - t147 + t139; /* link j7: what it passes on */
+    /* link j6: force and moment */
     const iiwa14_real_t t149 = parameters[M6] * t107 + (parameters[MX6] * t123 - t106 * parameters[MY6]
         + parameters[MZ6] * t49);
+    /* link j7: force and moment */
     const iiwa14_real_t t150 = parameters[MX7] * t72 - parameters[MY7] * t110 + (t113
         + t79) * parameters[MZ7];
-    const iiwa14_real_t t151 = t149 + (parameters[M7] * t108 + t150);
+    const iiwa14_real_t t151 = t149 + (parameters[M7] * t108 + t150); /* link j7: what it passes on */
+    /* link j5: force and moment */
     const iiwa14_real_t t152 = (t135 + t136) * parameters[MX5] + parameters[MY5] * t31
         - parameters[MZ5] * t56;
+    /* link j6: what it passes on */
     const iiwa14_real_t t153 = t48 * t148 - t32 * t151 - (parameters[M5] * t93 + t152);
+    /* link j6: force and moment */
     const iiwa14_real_t t154 = parameters[MY6] * t54 - parameters[MX6] * t121 + (t104
         + t124) * parameters[MZ6];
+    /* link j5: force and moment */
     const iiwa14_real_t t155 = (t144 + t136) * parameters[MY5] - parameters[MX5] * t134
         + parameters[MZ5] * t43;
+    /* link j6: what it passes on */
     const iiwa14_real_t t156 = parameters[M5] * t101 + t155 + (parameters[M6] * t101 + t154 + t120);
-    const iiwa14_real_t t157 = t11 * t156 - t14 * t153;
-    const iiwa14_real_t t158 = t30 - t29;
+    const iiwa14_real_t t157 = t11 * t156 - t14 * t153; /* link j5: what it passes on */
+    const iiwa14_real_t t158 = t30 - t29; /* link j5: motion */
+    /* link j4: force and moment */
     const iiwa14_real_t t159 = parameters[XX4] * t41 + t40 * (parameters[ZZ4] - parameters[YY4])
         + parameters[XY4] * t158;
-    const iiwa14_real_t t160 = t37 - t34;
-    const iiwa14_real_t t161 = t33 * t33;
+    const iiwa14_real_t t160 = t37 - t34; /* link j5: motion */
+    const iiwa14_real_t t161 = t33 * t33; /* link j4: motion */
+    /* link j4: force and moment */
     const iiwa14_real_t t162 = t159 - parameters[XZ4] * t160 + (t161 - t95) * parameters[YZ4]
         + (parameters[MY4] * t91 + parameters[MZ4] * t97);
+    /* link j5: what it passes on */
     const iiwa14_real_t t163 = t162 + (t11 * t138 - t14 * t146 + IIWA14_C(0.4) * t157);
+    /* link j5: force and moment */
     const iiwa14_real_t t164 = parameters[ZZ5] * t30 - t17 * (parameters[XX5] - parameters[YY5])
         + parameters[YZ5] * t56;
     const iiwa14_real_t t165 = t164 + parameters[XZ5] * t43 + (t144 - t135) * parameters[XY5]
         + (parameters[MY5] * t93 - parameters[MX5] * t101);
-    const iiwa14_real_t t166 = t165 + (t48 * t131 - t32 * t126);
+    const iiwa14_real_t t166 = t165 + (t48 * t131 - t32 * t126); /* link j6: what it passes on */
+    /* link j4: force and moment */
     const iiwa14_real_t t167 = parameters[YY4] * t30 - t29 * (parameters[ZZ4] - parameters[XX4])
         + parameters[XY4] * t42;
     const iiwa14_real_t t168 = t167 - parameters[YZ4] * t38 + (t95 - t94) * parameters[XZ4]
         + (parameters[MZ4] * t89 - parameters[MX4] * t91);
-    const iiwa14_real_t t169 = t168 + t166;
+    const iiwa14_real_t t169 = t168 + t166; /* link j5: what it passes on */
+    /* link j3: force and moment */
     const iiwa14_real_t t170 = parameters[XX3] * t26 - t21 * (parameters[YY3] - parameters[ZZ3])
         + parameters[XY3] * (t35 + t37);
-    const iiwa14_real_t t171 = t19 + t18;
-    const iiwa14_real_t t172 = t12 * t12;
+    const iiwa14_real_t t171 = t19 + t18; /* link j4: motion */
+    const iiwa14_real_t t172 = t12 * t12; /* link j3: motion */
     const iiwa14_real_t t173 = t8 * t8;
+    /* link j3: force and moment */
     const iiwa14_real_t t174 = t170 - parameters[XZ3] * t171 + (t172 - t173) * parameters[YZ3]
         + (parameters[MZ3] * t91 - t84 * parameters[MY3]);
-    const iiwa14_real_t t175 = t174 + (t5 * t163 - t9 * t169);
-    const iiwa14_real_t t176 = t11 * t153 + t14 * t156;
+    const iiwa14_real_t t175 = t174 + (t5 * t163 - t9 * t169); /* link j4: what it passes on */
+    const iiwa14_real_t t176 = t11 * t153 + t14 * t156; /* link j5: what it passes on */
+    /* link j4: force and moment */
     const iiwa14_real_t t177 = parameters[ZZ4] * t37 - t34 * (parameters[YY4] - parameters[XX4])
         - parameters[YZ4] * t28;
     const iiwa14_real_t t178 = t177 - parameters[XZ4] * t39 + (t161 - t94) * parameters[XY4]
         + (parameters[MX4] * t97 + parameters[MY4] * t89);
+    /* link j5: what it passes on */
     const iiwa14_real_t t179 = t178 + (t14 * t138 + t11 * t146 + IIWA14_C(0.4) * t176);
+    /* link j3: force and moment */
     const iiwa14_real_t t180 = parameters[YY3] * t37 + t35 * (parameters[ZZ3] - parameters[XX3])
         + parameters[XY3] * t27;
-    const iiwa14_real_t t181 = t4 * t4;
+    const iiwa14_real_t t181 = t4 * t4; /* link j3: motion */
+    /* link j3: force and moment */
     const iiwa14_real_t t182 = t180 + parameters[YZ3] * t20 + (t173 - t181) * parameters[XZ3]
         + (parameters[MZ3] * t88 + t84 * parameters[MX3]);
-    const iiwa14_real_t t183 = t182 + t179;
+    const iiwa14_real_t t183 = t182 + t179; /* link j4: what it passes on */
+    /* link j4: force and moment */
     const iiwa14_real_t t184 = parameters[MY4] * t38 - (t161 + t95) * parameters[MX4] + parameters[MZ4] * t28;
+    /* link j5: force and moment */
     const iiwa14_real_t t185 = parameters[MX5] * t132 + parameters[MY5] * t47 + (t144
         + t135) * parameters[MZ5];
+    /* link j6: what it passes on */
     const iiwa14_real_t t186 = parameters[M5] * t98 + t185 + (t32 * t148 + t48 * t151);
+    /* link j4: force and moment */
     const iiwa14_real_t t187 = parameters[M4] * t97 + (parameters[MX4] * t160 + t96 * parameters[MY4]
         + parameters[MZ4] * t39);
+    /* link j4: what it passes on */
     const iiwa14_real_t t188 = t5 * (parameters[M4] * t89 + t184 + t176) + t9 * (t187 + t186);
+    /* link j3: force and moment */
     const iiwa14_real_t t189 = parameters[MZ3] * t36 - ((t172 + t173) * parameters[MX3]
         + parameters[MY3] * t20);
-    const iiwa14_real_t t190 = parameters[M3] * t88 + t189 + t188;
+    const iiwa14_real_t t190 = parameters[M3] * t88 + t189 + t188; /* link j4: what it passes on */
+    /* link j4: force and moment */
     const iiwa14_real_t t191 = parameters[MX4] * t158 - parameters[MY4] * t42 + (t94
         + t161) * parameters[MZ4];
+    /* link j3: force and moment */
     const iiwa14_real_t t192 = parameters[MX3] * t171 + (t181 + t173) * parameters[MY3]
         - parameters[MZ3] * t25;
+    /* link j4: what it passes on */
     const iiwa14_real_t t193 = t191 - parameters[M4] * t91 - t157 - (parameters[M3] * t91 + t192);
+    /* link j3: what it passes on */
     const iiwa14_real_t t194 = t3 * t183 - t2 * t175 + IIWA14_C(0.42) * (t3 * t190 + t2 * t193);
+    /* link j2: force and moment */
     const iiwa14_real_t t195 = t23 * parameters[XX2] + t23 * (parameters[ZZ2] - parameters[YY2])
         + IIWA14_C(-2.0) * t19 * parameters[XY2];
-    const iiwa14_real_t t196 = t7 * t7;
+    const iiwa14_real_t t196 = t7 * t7; /* link j2: motion */
+    /* link j2: force and moment */
     const iiwa14_real_t t197 = t195 - t22 * parameters[XZ2] + (t82 - t196) * parameters[YZ2]
         + t83 * parameters[MZ2];
+    /* link j3: force and moment */
     const iiwa14_real_t t198 = t18 * (parameters[XX3] - parameters[YY3]) - t19 * parameters[ZZ3]
         + parameters[YZ3] * t36;
     const iiwa14_real_t t199 = t198 - parameters[XZ3] * t25 + (t181 - t172) * parameters[XY3]
         - (parameters[MX3] * t91 + parameters[MY3] * t88);
-    const iiwa14_real_t t200 = t199 + (t9 * t163 + t5 * t169);
+    const iiwa14_real_t t200 = t199 + (t9 * t163 + t5 * t169); /* link j4: what it passes on */
+    /* link j2: force and moment */
     const iiwa14_real_t t201 = t19 * (parameters[XX2] - parameters[ZZ2]) - t19 * parameters[YY2]
         + t24 * parameters[XY2];
     const iiwa14_real_t t202 = t201 + t22 * parameters[YZ2] + (t81 - t82) * parameters[XZ2]
         + t85 * parameters[MZ2];
     const iiwa14_real_t t203 = IIWA14_C(0.0625) * (t0 * (t197 + t194) + t6 * (t202 + t200));
-    const iiwa14_real_t t204 = iiwa14_sign(dq[0]);
+    const iiwa14_real_t t204 = iiwa14_sign(dq[0]); /* joint j1: coulomb_friction */
     const iiwa14_real_t t205 = IIWA14_C(10.0) * (IIWA14_C(160.0) * dq[0] * parameters[FV1]
         + t204 * parameters[FC1]) + t203;
     out[0] = t205;
+    /* link j3: what it passes on */
     const iiwa14_real_t t206 = t3 * t175 + t2 * t183 + IIWA14_C(0.42) * (t2 * t190 - t3 * t193);
+    /* link j2: force and moment */
     const iiwa14_real_t t207 = t22 * (parameters[YY2] - parameters[XX2]) + (t81 - t196) * parameters[XY2]
         + (t83 * parameters[MX2] + t85 * parameters[MY2]);
-    const iiwa14_real_t t208 = iiwa14_sign(dq[1]);
+    const iiwa14_real_t t208 = iiwa14_sign(dq[1]); /* joint j2: coulomb_friction */
     const iiwa14_real_t t209 = IIWA14_C(10.0) * (IIWA14_C(160.0) * dq[1] * parameters[FV2]
         + t208 * parameters[FC2]) + IIWA14_C(0.0625) * (t207 + t206);
     out[1] = t209;
-    const iiwa14_real_t t210 = iiwa14_sign(dq[2]);
+    const iiwa14_real_t t210 = iiwa14_sign(dq[2]); /* joint j3: coulomb_friction */
     const iiwa14_real_t t211 = IIWA14_C(10.0) * (IIWA14_C(160.0) * dq[2] * parameters[FV3]
         + t210 * parameters[FC3]) + IIWA14_C(0.0625) * t200;
     out[2] = t211;
-    const iiwa14_real_t t212 = iiwa14_sign(dq[3]);
+    const iiwa14_real_t t212 = iiwa14_sign(dq[3]); /* joint j4: coulomb_friction */
     const iiwa14_real_t t213 = IIWA14_C(10.0) * (IIWA14_C(160.0) * dq[3] * parameters[FV4]
         + t212 * parameters[FC4]) + IIWA14_C(-0.0625) * t179;
     out[3] = t213;
-    const iiwa14_real_t t214 = iiwa14_sign(dq[4]);
+    const iiwa14_real_t t214 = iiwa14_sign(dq[4]); /* joint j5: coulomb_friction */
     const iiwa14_real_t t215 = IIWA14_C(12.5) * (IIWA14_C(1.0e2) * dq[4] * parameters[FV5]
         + t214 * parameters[FC5]) + IIWA14_C(0.125) * t166;
     out[4] = t215;
-    const iiwa14_real_t t216 = iiwa14_sign(dq[5]);
+    const iiwa14_real_t t216 = iiwa14_sign(dq[5]); /* joint j6: coulomb_friction */
     const iiwa14_real_t t217 = IIWA14_C(20.0) * (IIWA14_C(160.0) * dq[5] * parameters[FV6]
         + t216 * parameters[FC6]) + IIWA14_C(0.125) * t142;
     out[5] = t217;
-    const iiwa14_real_t t218 = iiwa14_sign(dq[6]);
+    const iiwa14_real_t t218 = iiwa14_sign(dq[6]); /* joint j7: coulomb_friction */
     const iiwa14_real_t t219 = IIWA14_C(20.0) * (IIWA14_C(160.0) * dq[6] * parameters[FV7]
         + t218 * parameters[FC7]) + IIWA14_C(0.125) * t128;
     out[6] = t219;

@@ -8,16 +8,16 @@
  */
 #include "iiwa14_private.h"
 
-#if IIWA14_GENERATION != 0x27C72E36UL
+#if IIWA14_GENERATION != 0x1E31C9F2UL
 #error "iiwa14.h and iiwa14_check_parameters.c are of different generations: generate the arm again"
 #endif
 
-int iiwa14_check_parameters(const iiwa14_real_t parameters[IIWA14_N_PARAMETERS])
+iiwa14_status_t iiwa14_check_parameters(const iiwa14_real_t parameters[IIWA14_N_PARAMETERS])
 {
     return iiwa14_within(parameters, 62, IIWA14_C(1.0e18)) ? IIWA14_STATUS_OK : IIWA14_STATUS_INPUT;
 }
 
-int iiwa14_check_parameters_standard(const iiwa14_real_t parameters[IIWA14_N_STANDARD_PARAMETERS])
+iiwa14_status_t iiwa14_check_parameters_standard(const iiwa14_real_t parameters[IIWA14_N_STANDARD_PARAMETERS])
 {
     return iiwa14_within(parameters, 91, IIWA14_C(1.0e18)) ? IIWA14_STATUS_OK : IIWA14_STATUS_INPUT;
 }

@@ -8,8 +8,8 @@
  *
  * Operations: 0 (0 mul, 0 add, 0 neg).
  *
- * @param[in]   q    [7]  [rad]            joint coordinates; norm at most 10000
- * @param[out]  out  [7]  [(N m) per (A)]  drive gains K
+ * @param[in]   q    [7]  [rad]        joint coordinates; norm at most 10000
+ * @param[out]  out  [7]  [N m per A]  drive gains K
  *
  * Coordinates:
  *
@@ -23,15 +23,15 @@
  */
 #include "iiwa14_private.h"
 
-#if IIWA14_GENERATION != 0x27C72E36UL
+#if IIWA14_GENERATION != 0x1E31C9F2UL
 #error "iiwa14.h and iiwa14_drive_gain.c are of different generations: generate the arm again"
 #endif
 
-int iiwa14_drive_gain(
+iiwa14_status_t iiwa14_drive_gain(
     const iiwa14_real_t q[IIWA14_N_JOINTS],
     iiwa14_real_t out[IIWA14_N_JOINTS])
 {
-    int status = IIWA14_STATUS_OK;
+    iiwa14_status_t status = IIWA14_STATUS_OK;
 
     if (!iiwa14_within_joints(q, IIWA14_C(1.0e8))) {
         status |= IIWA14_STATUS_INPUT;

@@ -91,11 +91,11 @@
  */
 #include "iiwa14_private.h"
 
-#if IIWA14_GENERATION != 0x27C72E36UL
+#if IIWA14_GENERATION != 0x1E31C9F2UL
 #error "iiwa14.h and iiwa14_energy.c are of different generations: generate the arm again"
 #endif
 
-int iiwa14_energy(
+iiwa14_status_t iiwa14_energy(
     const iiwa14_real_t q[IIWA14_N_JOINTS],
     const iiwa14_real_t dq[IIWA14_N_JOINTS],
     const iiwa14_real_t parameters[IIWA14_N_PARAMETERS],
@@ -106,7 +106,7 @@ int iiwa14_energy(
         XZ4, YZ4, ZZ4R, MX4, MY4R, XX5R, XY5, XZ5, YZ5, ZZ5R, MX5, MY5R, XX6R, XY6, XZ6, YZ6, ZZ6R, MX6, MY6R,
         XX7R, XY7, XZ7R, YZ7R, ZZ7, MX7, MY7, FV1, FC1, FV2, FC2, FV3, FC3, IA3, FV4, FC4, IA4, FV5, FC5, IA5,
         FV6, FC6, IA6, FV7, FC7, IA7 };
-    int status = IIWA14_STATUS_OK;
+    iiwa14_status_t status = IIWA14_STATUS_OK;
 
     if (!iiwa14_within_joints(q, IIWA14_C(1.0e8))
         || !iiwa14_within_joints(dq, IIWA14_C(1.0e10))
@@ -131,11 +131,11 @@ int iiwa14_energy(
     IIWA14_SINCOS(q[5], &t47, &t46);
     iiwa14_real_t t58, t57;
     IIWA14_SINCOS(q[6], &t58, &t57);
-    const iiwa14_real_t t1 = t0 * dq[0];
-    const iiwa14_real_t t4 = t3 * dq[1] - t2 * t1;
+    const iiwa14_real_t t1 = t0 * dq[0]; /* link j2: motion */
+    const iiwa14_real_t t4 = t3 * dq[1] - t2 * t1; /* link j3: motion */
     const iiwa14_real_t t5 = t3 * t1 + t2 * dq[1];
-    const iiwa14_real_t t7 = t6 * dq[0];
-    const iiwa14_real_t t8 = dq[2] + t7;
+    const iiwa14_real_t t7 = t6 * dq[0]; /* link j2: motion */
+    const iiwa14_real_t t8 = dq[2] + t7; /* link j3: motion */
     const iiwa14_real_t t9 = t4 * (parameters[XX3R] * t4 + parameters[XY3] * t5 + parameters[XZ3] * t8);
     const iiwa14_real_t t10 = t8 * (parameters[XZ3] * t4 + parameters[YZ3] * t5 + parameters[ZZ3R] * t8);
     const iiwa14_real_t t11 = t9 + t5 * (parameters[XY3] * t4 + parameters[YZ3] * t8) + t10;
@@ -145,46 +145,46 @@ int iiwa14_energy(
     const iiwa14_real_t t14 = t12 + t7 * (parameters[XY2] * t1 - parameters[YZ2] * dq[1]) + t13;
     const iiwa14_real_t t15 = IIWA14_C(0.5) * (dq[0] * (parameters[ZZ1R] * dq[0])) + IIWA14_C(0.5) * t14
         + IIWA14_C(0.5) * t11;
-    const iiwa14_real_t t16 = IIWA14_C(-0.42) * dq[1];
+    const iiwa14_real_t t16 = IIWA14_C(-0.42) * dq[1]; /* link j3: velocity of its origin */
     const iiwa14_real_t t17 = IIWA14_C(0.42) * t1;
     const iiwa14_real_t t18 = t3 * t16 + t2 * t17;
     const iiwa14_real_t t19 = t2 * t16 - t3 * t17;
     const iiwa14_real_t t20 = t15 + (parameters[MX3] * (t8 * t18) + parameters[MY3R] * (t8 * t19));
-    const iiwa14_real_t t23 = t21 * t4 + t22 * t8;
+    const iiwa14_real_t t23 = t21 * t4 + t22 * t8; /* link j4: motion */
     const iiwa14_real_t t24 = t22 * t4 - t21 * t8;
     const iiwa14_real_t t25 = dq[3] - t5;
     const iiwa14_real_t t26 = t23 * (parameters[XY4] * t24 - parameters[XX4R] * t23 - parameters[XZ4] * t25);
     const iiwa14_real_t t27 = t25 * (parameters[XZ4] * t23 - parameters[YZ4] * t24 + parameters[ZZ4R] * t25);
     const iiwa14_real_t t28 = t27 - (t26 + t24 * (parameters[XY4] * t23 + parameters[YZ4] * t25));
-    const iiwa14_real_t t29 = t22 * t19;
+    const iiwa14_real_t t29 = t22 * t19; /* link j4: velocity of its origin */
     const iiwa14_real_t t30 = t21 * t19;
     const iiwa14_real_t t31 = parameters[MX4] * (t25 * t29 - t24 * t18) + parameters[MY4R] * (t25 * t30
         - t23 * t18);
-    const iiwa14_real_t t34 = t33 * t25 - t32 * t23;
+    const iiwa14_real_t t34 = t33 * t25 - t32 * t23; /* link j5: motion */
     const iiwa14_real_t t35 = t33 * t23 + t32 * t25;
     const iiwa14_real_t t36 = t24 - dq[4];
     const iiwa14_real_t t37 = t34 * (parameters[XX5R] * t34 + parameters[XY5] * t35 + parameters[XZ5] * t36);
     const iiwa14_real_t t38 = t36 * (parameters[XZ5] * t34 + parameters[YZ5] * t35 + parameters[ZZ5R] * t36);
     const iiwa14_real_t t39 = t37 + t35 * (parameters[XY5] * t34 + parameters[YZ5] * t36) + t38;
-    const iiwa14_real_t t40 = t30 + IIWA14_C(0.4) * t25;
+    const iiwa14_real_t t40 = t30 + IIWA14_C(0.4) * t25; /* link j5: velocity of its origin */
     const iiwa14_real_t t41 = IIWA14_C(0.4) * t23 - t18;
     const iiwa14_real_t t42 = t32 * t41 - t33 * t40;
     const iiwa14_real_t t43 = t32 * t40 + t33 * t41;
     const iiwa14_real_t t44 = parameters[MX5] * (t36 * t42 + t35 * t29) - parameters[MY5R] * (t34 * t29
         + t36 * t43);
     const iiwa14_real_t t45 = t20 + IIWA14_C(0.5) * t28 + t31 + IIWA14_C(0.5) * t39 + t44;
-    const iiwa14_real_t t48 = t47 * t36 - t46 * t34;
+    const iiwa14_real_t t48 = t47 * t36 - t46 * t34; /* link j6: motion */
     const iiwa14_real_t t49 = t47 * t34 + t46 * t36;
     const iiwa14_real_t t50 = t35 - dq[5];
     const iiwa14_real_t t51 = t48 * (parameters[XZ6] * t50 - (parameters[XX6R] * t48
         + parameters[XY6] * t49));
     const iiwa14_real_t t52 = t50 * (parameters[XZ6] * t48 + parameters[YZ6] * t49 - parameters[ZZ6R] * t50);
     const iiwa14_real_t t53 = t49 * (parameters[XY6] * t48 - parameters[YZ6] * t50) - t51 - t52;
-    const iiwa14_real_t t54 = t47 * t43 - t46 * t29;
+    const iiwa14_real_t t54 = t47 * t43 - t46 * t29; /* link j6: velocity of its origin */
     const iiwa14_real_t t55 = t46 * t43 + t47 * t29;
     const iiwa14_real_t t56 = parameters[MX6] * (t49 * t42 - t50 * t54) - parameters[MY6R] * (t48 * t42
         + t50 * t55);
-    const iiwa14_real_t t59 = t57 * t48 - t58 * t50;
+    const iiwa14_real_t t59 = t57 * t48 - t58 * t50; /* link j7: motion */
     const iiwa14_real_t t60 = t58 * t48 + t57 * t50;
     const iiwa14_real_t t61 = t49 - dq[6];
     const iiwa14_real_t t62 = t59 * (parameters[XY7] * t60 - parameters[XX7R] * t59 + parameters[XZ7R] * t61);
@@ -199,19 +199,19 @@ int iiwa14_energy(
     const iiwa14_real_t t69 = t68 + IIWA14_C(0.5) * (IIWA14_C(1.0e4) * parameters[IA5] * (dq[4] * dq[4]))
         + IIWA14_C(0.5) * (IIWA14_C(2.56e4) * parameters[IA6] * (dq[5] * dq[5]));
     kinetic[0] = t69 + IIWA14_C(0.5) * (IIWA14_C(2.56e4) * parameters[IA7] * (dq[6] * dq[6]));
-    const iiwa14_real_t t70 = IIWA14_C(-9.81) * t0;
+    const iiwa14_real_t t70 = IIWA14_C(-9.81) * t0; /* link j2: motion */
     const iiwa14_real_t t71 = IIWA14_C(-9.81) * t6;
-    const iiwa14_real_t t72 = t2 * t70;
+    const iiwa14_real_t t72 = t2 * t70; /* link j3: motion */
     const iiwa14_real_t t73 = t3 * t70;
     const iiwa14_real_t t74 = parameters[MX2] * t70 + parameters[MY2R] * t71 + (parameters[MX3] * t72
         - parameters[MY3R] * t73);
-    const iiwa14_real_t t75 = t21 * t72 - t22 * t71;
+    const iiwa14_real_t t75 = t21 * t72 - t22 * t71; /* link j4: motion */
     const iiwa14_real_t t76 = t22 * t72 + t21 * t71;
-    const iiwa14_real_t t77 = t32 * t75 - t33 * t73;
+    const iiwa14_real_t t77 = t32 * t75 - t33 * t73; /* link j5: motion */
     const iiwa14_real_t t78 = t33 * t75 + t32 * t73;
     const iiwa14_real_t t79 = t74 + (parameters[MX4] * t75 - parameters[MY4R] * t76) + (parameters[MX5] * t77
         - parameters[MY5R] * t78);
-    const iiwa14_real_t t80 = t46 * t77 + t47 * t76;
+    const iiwa14_real_t t80 = t46 * t77 + t47 * t76; /* link j6: motion */
     const iiwa14_real_t t81 = parameters[MX6] * t80 + parameters[MY6R] * (t46 * t76 - t47 * t77);
     const iiwa14_real_t t82 = parameters[MX7] * (t57 * t80 - t58 * t78) - parameters[MY7] * (t58 * t80
         + t57 * t78);

@@ -120,11 +120,11 @@
  */
 #include "iiwa14_private.h"
 
-#if IIWA14_GENERATION != 0x27C72E36UL
+#if IIWA14_GENERATION != 0x1E31C9F2UL
 #error "iiwa14.h and iiwa14_energy_standard.c are of different generations: generate the arm again"
 #endif
 
-int iiwa14_energy_standard(
+iiwa14_status_t iiwa14_energy_standard(
     const iiwa14_real_t q[IIWA14_N_JOINTS],
     const iiwa14_real_t dq[IIWA14_N_JOINTS],
     const iiwa14_real_t parameters[IIWA14_N_STANDARD_PARAMETERS],
@@ -136,7 +136,7 @@ int iiwa14_energy_standard(
         XX5, XY5, XZ5, YY5, YZ5, ZZ5, MX5, MY5, MZ5, M5, XX6, XY6, XZ6, YY6, YZ6, ZZ6, MX6, MY6, MZ6, M6, XX7,
         XY7, XZ7, YY7, YZ7, ZZ7, MX7, MY7, MZ7, M7, FV1, FC1, IA1, FV2, FC2, IA2, FV3, FC3, IA3, FV4, FC4,
         IA4, FV5, FC5, IA5, FV6, FC6, IA6, FV7, FC7, IA7 };
-    int status = IIWA14_STATUS_OK;
+    iiwa14_status_t status = IIWA14_STATUS_OK;
 
     if (!iiwa14_within_joints(q, IIWA14_C(1.0e8))
         || !iiwa14_within_joints(dq, IIWA14_C(1.0e10))
@@ -161,15 +161,15 @@ int iiwa14_energy_standard(
     IIWA14_SINCOS(q[5], &t54, &t53);
     iiwa14_real_t t70, t68;
     IIWA14_SINCOS(q[6], &t70, &t68);
-    const iiwa14_real_t t1 = t0 * dq[0];
-    const iiwa14_real_t t4 = t3 * dq[1] - t2 * t1;
+    const iiwa14_real_t t1 = t0 * dq[0]; /* link j2: motion */
+    const iiwa14_real_t t4 = t3 * dq[1] - t2 * t1; /* link j3: motion */
     const iiwa14_real_t t5 = t3 * t1 + t2 * dq[1];
-    const iiwa14_real_t t7 = t6 * dq[0];
-    const iiwa14_real_t t8 = dq[2] + t7;
+    const iiwa14_real_t t7 = t6 * dq[0]; /* link j2: motion */
+    const iiwa14_real_t t8 = dq[2] + t7; /* link j3: motion */
     const iiwa14_real_t t9 = t4 * (t4 * parameters[XX3] + t5 * parameters[XY3] + t8 * parameters[XZ3]);
     const iiwa14_real_t t10 = t5 * (t4 * parameters[XY3] + t5 * parameters[YY3] + t8 * parameters[YZ3]);
     const iiwa14_real_t t11 = t8 * (t4 * parameters[XZ3] + t5 * parameters[YZ3] + t8 * parameters[ZZ3]);
-    const iiwa14_real_t t12 = IIWA14_C(0.42) * dq[1];
+    const iiwa14_real_t t12 = IIWA14_C(0.42) * dq[1]; /* link j3: velocity of its origin */
     const iiwa14_real_t t13 = IIWA14_C(0.42) * t1;
     const iiwa14_real_t t14 = t2 * t12 + t3 * t13;
     const iiwa14_real_t t15 = t2 * t13 - t3 * t12;
@@ -183,13 +183,13 @@ int iiwa14_energy_standard(
         + t20);
     const iiwa14_real_t t22 = parameters[MX3] * (t8 * t15) - parameters[MY3] * (t8 * t14)
         + parameters[MZ3] * (t5 * t14 - t4 * t15);
-    const iiwa14_real_t t25 = t23 * t4 + t24 * t8;
+    const iiwa14_real_t t25 = t23 * t4 + t24 * t8; /* link j4: motion */
     const iiwa14_real_t t26 = t24 * t4 - t23 * t8;
     const iiwa14_real_t t27 = t5 - dq[3];
     const iiwa14_real_t t28 = t25 * (t26 * parameters[XY4] - t25 * parameters[XX4] + t27 * parameters[XZ4]);
     const iiwa14_real_t t29 = t26 * (t25 * parameters[XY4] - t26 * parameters[YY4] - t27 * parameters[YZ4]);
     const iiwa14_real_t t30 = t27 * (t25 * parameters[XZ4] - t26 * parameters[YZ4] - t27 * parameters[ZZ4]);
-    const iiwa14_real_t t31 = t23 * t14;
+    const iiwa14_real_t t31 = t23 * t14; /* link j4: velocity of its origin */
     const iiwa14_real_t t32 = t24 * t14;
     const iiwa14_real_t t33 = t32 * t32;
     const iiwa14_real_t t34 = parameters[M4] * (t16 + (t31 * t31 + t33)) - (t28 + t29 + t30);
@@ -197,12 +197,12 @@ int iiwa14_energy_standard(
         - t25 * t15);
     const iiwa14_real_t t36 = t21 + IIWA14_C(0.5) * t17 + t22 + IIWA14_C(0.5) * t34 + (t35
         + parameters[MZ4] * (t25 * t32 - t26 * t31));
-    const iiwa14_real_t t37 = t31 + IIWA14_C(0.4) * t27;
+    const iiwa14_real_t t37 = t31 + IIWA14_C(0.4) * t27; /* link j5: velocity of its origin */
     const iiwa14_real_t t39 = t15 + IIWA14_C(-0.4) * t25;
     const iiwa14_real_t t41 = t38 * t37 + t40 * t39;
     const iiwa14_real_t t42 = t40 * t37 - t38 * t39;
     const iiwa14_real_t t43 = t42 * t42;
-    const iiwa14_real_t t44 = t38 * t25 + t40 * t27;
+    const iiwa14_real_t t44 = t38 * t25 + t40 * t27; /* link j5: motion */
     const iiwa14_real_t t45 = t38 * t27 - t40 * t25;
     const iiwa14_real_t t46 = t26 - dq[4];
     const iiwa14_real_t t47 = t44 * (t46 * parameters[XZ5] - (t44 * parameters[XX5] + t45 * parameters[XY5]));
@@ -212,10 +212,10 @@ int iiwa14_energy_standard(
     const iiwa14_real_t t51 = parameters[MX5] * (t46 * t42 + t45 * t32) + parameters[MY5] * (t46 * t41
         - t44 * t32);
     const iiwa14_real_t t52 = t36 + IIWA14_C(0.5) * t50 + (t51 + parameters[MZ5] * (t45 * t41 + t44 * t42));
-    const iiwa14_real_t t55 = t53 * t41 + t54 * t32;
+    const iiwa14_real_t t55 = t53 * t41 + t54 * t32; /* link j6: velocity of its origin */
     const iiwa14_real_t t56 = t53 * t32 - t54 * t41;
     const iiwa14_real_t t57 = t56 * t56;
-    const iiwa14_real_t t58 = t53 * t44 + t54 * t46;
+    const iiwa14_real_t t58 = t53 * t44 + t54 * t46; /* link j6: motion */
     const iiwa14_real_t t59 = t53 * t46 - t54 * t44;
     const iiwa14_real_t t60 = dq[5] + t45;
     const iiwa14_real_t t61 = t58 * (t58 * parameters[XX6] + t59 * parameters[XY6] + t60 * parameters[XZ6]);
@@ -225,11 +225,11 @@ int iiwa14_energy_standard(
     const iiwa14_real_t t65 = parameters[MX6] * (t60 * t56 + t59 * t42) - parameters[MY6] * (t58 * t42
         + t60 * t55);
     const iiwa14_real_t t66 = t52 + IIWA14_C(0.5) * t64 + (t65 + parameters[MZ6] * (t59 * t55 - t58 * t56));
-    const iiwa14_real_t t67 = t55 + IIWA14_C(0.126) * t60;
+    const iiwa14_real_t t67 = t55 + IIWA14_C(0.126) * t60; /* link j7: velocity of its origin */
     const iiwa14_real_t t69 = IIWA14_C(-0.126) * t58 - t42;
     const iiwa14_real_t t71 = t68 * t67 + t70 * t69;
     const iiwa14_real_t t72 = t70 * t67 - t68 * t69;
-    const iiwa14_real_t t73 = t68 * t58 + t70 * t60;
+    const iiwa14_real_t t73 = t68 * t58 + t70 * t60; /* link j7: motion */
     const iiwa14_real_t t74 = t68 * t60 - t70 * t58;
     const iiwa14_real_t t75 = t59 - dq[6];
     const iiwa14_real_t t76 = t73 * (t75 * parameters[XZ7] - (t73 * parameters[XX7] + t74 * parameters[XY7]));
@@ -246,25 +246,25 @@ int iiwa14_energy_standard(
     const iiwa14_real_t t84 = t83 + IIWA14_C(0.5) * (dq[4] * dq[4] * (IIWA14_C(1.0e4) * parameters[IA5]))
         + IIWA14_C(0.5) * (dq[5] * dq[5] * (IIWA14_C(2.56e4) * parameters[IA6]));
     kinetic[0] = t84 + IIWA14_C(0.5) * (dq[6] * dq[6] * (IIWA14_C(2.56e4) * parameters[IA7]));
-    const iiwa14_real_t t85 = IIWA14_C(-9.81) * t0;
+    const iiwa14_real_t t85 = IIWA14_C(-9.81) * t0; /* link j2: motion */
     const iiwa14_real_t t86 = IIWA14_C(9.81) * t6;
     const iiwa14_real_t t87 = IIWA14_C(9.81) * parameters[MZ1] + IIWA14_C(3.5316) * parameters[M1]
         + (t85 * parameters[MX2] - t86 * parameters[MY2] + IIWA14_C(3.5316) * parameters[M2]);
-    const iiwa14_real_t t88 = t2 * t85;
+    const iiwa14_real_t t88 = t2 * t85; /* link j3: motion */
     const iiwa14_real_t t89 = t3 * t85;
     const iiwa14_real_t t90 = IIWA14_C(4.1202) * t6 + IIWA14_C(3.5316);
     const iiwa14_real_t t91 = t88 * parameters[MX3] - t89 * parameters[MY3] + t86 * parameters[MZ3]
         + parameters[M3] * t90;
-    const iiwa14_real_t t92 = t23 * t88 + t24 * t86;
+    const iiwa14_real_t t92 = t23 * t88 + t24 * t86; /* link j4: motion */
     const iiwa14_real_t t93 = t23 * t86 - t24 * t88;
     const iiwa14_real_t t94 = t92 * parameters[MX4] + t93 * parameters[MY4] + t89 * parameters[MZ4]
         + parameters[M4] * t90;
-    const iiwa14_real_t t95 = t38 * t92 - t40 * t89;
+    const iiwa14_real_t t95 = t38 * t92 - t40 * t89; /* link j5: motion */
     const iiwa14_real_t t96 = t40 * t92 + t38 * t89;
     const iiwa14_real_t t97 = t90 + IIWA14_C(0.4) * t93;
     const iiwa14_real_t t98 = t95 * parameters[MX5] - t96 * parameters[MY5] + t93 * parameters[MZ5]
         + parameters[M5] * t97;
-    const iiwa14_real_t t99 = t53 * t95 - t54 * t93;
+    const iiwa14_real_t t99 = t53 * t95 - t54 * t93; /* link j6: motion */
     const iiwa14_real_t t100 = t54 * t95 + t53 * t93;
     const iiwa14_real_t t101 = t99 * parameters[MX6] - t100 * parameters[MY6] - t96 * parameters[MZ6]
         + parameters[M6] * t97;

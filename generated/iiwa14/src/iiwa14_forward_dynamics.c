@@ -6,7 +6,7 @@
  * Arm iiwa14, description 4f01a5afe35e97fd.
  * SPDX-License-Identifier: 0BSD
  *
- * Operations: 1140 (621 mul, 519 add, 0 neg), 7 div, 12 trig, 7 other.
+ * Operations: 1140 (621 mul, 519 add, 0 neg), 7 div, 12 trig, 7 other calls (sign, select and the like).
  *
  * @param[in]   q           [7]   [rad]      joint coordinates; norm at most 10000
  * @param[in]   dq          [7]   [rad/s]    joint velocities; norm at most 100000
@@ -92,11 +92,11 @@
  */
 #include "iiwa14_private.h"
 
-#if IIWA14_GENERATION != 0x27C72E36UL
+#if IIWA14_GENERATION != 0x1E31C9F2UL
 #error "iiwa14.h and iiwa14_forward_dynamics.c are of different generations: generate the arm again"
 #endif
 
-int iiwa14_forward_dynamics(
+iiwa14_status_t iiwa14_forward_dynamics(
     const iiwa14_real_t q[IIWA14_N_JOINTS],
     const iiwa14_real_t dq[IIWA14_N_JOINTS],
     const iiwa14_real_t input[IIWA14_N_JOINTS],
@@ -107,7 +107,7 @@ int iiwa14_forward_dynamics(
         XZ4, YZ4, ZZ4R, MX4, MY4R, XX5R, XY5, XZ5, YZ5, ZZ5R, MX5, MY5R, XX6R, XY6, XZ6, YZ6, ZZ6R, MX6, MY6R,
         XX7R, XY7, XZ7R, YZ7R, ZZ7, MX7, MY7, FV1, FC1, FV2, FC2, FV3, FC3, IA3, FV4, FC4, IA4, FV5, FC5, IA5,
         FV6, FC6, IA6, FV7, FC7, IA7 };
-    int status = IIWA14_STATUS_OK;
+    iiwa14_status_t status = IIWA14_STATUS_OK;
 
     if (!iiwa14_within_joints(q, IIWA14_C(1.0e8))
         || !iiwa14_within_joints(dq, IIWA14_C(1.0e10))
@@ -137,9 +137,11 @@ int iiwa14_forward_dynamics(
         iiwa14_zero(out, 7);
         return IIWA14_STATUS_PIVOT;
     }
+    /* link j7: column of the mass matrix */
     const iiwa14_real_t t3 = t1 * parameters[XZ7R] + t2 * parameters[YZ7R];
     const iiwa14_real_t t4 = IIWA14_C(-1.0) / t0;
     const iiwa14_real_t t5 = t3 * t4;
+    /* link j7: inertia of it and all beyond */
     const iiwa14_real_t t6 = parameters[XY7] * (IIWA14_C(2.0) * t1) - t2 * parameters[XX7R];
     const iiwa14_real_t t7 = t2 * t6;
     const iiwa14_real_t t8 = parameters[ZZ6R] + (parameters[XX7R] + t7);
@@ -156,14 +158,16 @@ int iiwa14_forward_dynamics(
     }
     const iiwa14_real_t t12 = t1 * t6 - parameters[XY7] - parameters[XZ6];
     const iiwa14_real_t t14 = t3 - parameters[YZ6];
-    const iiwa14_real_t t16 = t13 * t12 + t15 * t14;
+    const iiwa14_real_t t16 = t13 * t12 + t15 * t14; /* link j6: column of the mass matrix */
+    /* link j7: column of the mass matrix */
     const iiwa14_real_t t17 = t1 * parameters[YZ7R] - t2 * parameters[XZ7R];
     const iiwa14_real_t t18 = t13 * t17 + t15 * parameters[ZZ7];
     const iiwa14_real_t t19 = t16 + t18 * t5;
     const iiwa14_real_t t20 = IIWA14_C(-1.0) / t10;
     const iiwa14_real_t t21 = t19 * t20;
-    const iiwa14_real_t t22 = parameters[XX6R] - t7;
+    const iiwa14_real_t t22 = parameters[XX6R] - t7; /* link j7: inertia of it and all beyond */
     const iiwa14_real_t t23 = parameters[XY6] + t17;
+    /* link j6: inertia of it and all beyond */
     const iiwa14_real_t t24 = t15 * (t22 - parameters[ZZ7]) + t23 * (IIWA14_C(-2.0) * t13);
     const iiwa14_real_t t25 = t15 * t24;
     const iiwa14_real_t t26 = parameters[ZZ5R] + (t22 - t25);
@@ -181,19 +185,21 @@ int iiwa14_forward_dynamics(
     }
     const iiwa14_real_t t31 = t23 + t13 * t24 - parameters[XZ5];
     const iiwa14_real_t t33 = parameters[YZ5] + t16;
+    /* link j7: column of the mass matrix */
     const iiwa14_real_t t35 = t2 * parameters[MY7] + t1 * parameters[MX7];
-    const iiwa14_real_t t36 = parameters[MY5R] + t35;
+    const iiwa14_real_t t36 = parameters[MY5R] + t35; /* link j6: inertia of it and all beyond */
+    /* link j7: column of the mass matrix */
     const iiwa14_real_t t37 = t2 * parameters[MX7] - t1 * parameters[MY7];
-    const iiwa14_real_t t38 = parameters[MX6] + t37;
-    const iiwa14_real_t t39 = t15 * t38 - t13 * parameters[MY6R];
-    const iiwa14_real_t t40 = parameters[MX5] + t39;
-    const iiwa14_real_t t41 = t34 * t36 + t32 * t40;
+    const iiwa14_real_t t38 = parameters[MX6] + t37; /* link j7: inertia of it and all beyond */
+    const iiwa14_real_t t39 = t15 * t38 - t13 * parameters[MY6R]; /* link j6: column of the mass matrix */
+    const iiwa14_real_t t40 = parameters[MX5] + t39; /* link j6: inertia of it and all beyond */
+    const iiwa14_real_t t41 = t34 * t36 + t32 * t40; /* link j5: column of the mass matrix */
     const iiwa14_real_t t42 = t32 * t31 - t34 * t33 + IIWA14_C(0.4) * t41;
-    const iiwa14_real_t t43 = t15 * t17 - t13 * parameters[ZZ7];
+    const iiwa14_real_t t43 = t15 * t17 - t13 * parameters[ZZ7]; /* link j7: column of the mass matrix */
     const iiwa14_real_t t44 = t15 * t35;
     const iiwa14_real_t t45 = t34 * t44 + t32 * t37;
     const iiwa14_real_t t46 = t32 * t43 - t34 * t3 + IIWA14_C(0.4) * t45;
-    const iiwa14_real_t t47 = t13 * t14 - t15 * t12;
+    const iiwa14_real_t t47 = t13 * t14 - t15 * t12; /* link j6: column of the mass matrix */
     const iiwa14_real_t t48 = t15 * parameters[MY6R] + t13 * t38;
     const iiwa14_real_t t49 = t34 * t48;
     const iiwa14_real_t t50 = IIWA14_C(0.4) * t49 - (t32 * t47 + t34 * t8);
@@ -202,8 +208,10 @@ int iiwa14_forward_dynamics(
     const iiwa14_real_t t53 = IIWA14_C(-1.0) / t29;
     const iiwa14_real_t t54 = t52 * t53;
     const iiwa14_real_t t55 = t46 * t4;
+    /* link j6: inertia of it and all beyond */
     const iiwa14_real_t t56 = parameters[XX5R] + (parameters[ZZ7] + t25);
     const iiwa14_real_t t57 = parameters[XY5] + t47;
+    /* link j5: inertia of it and all beyond */
     const iiwa14_real_t t58 = t34 * (t8 - t56) + t57 * (IIWA14_C(2.0) * t32);
     const iiwa14_real_t t59 = t34 * t58;
     const iiwa14_real_t t60 = IIWA14_C(-0.8) * t48;
@@ -221,29 +229,30 @@ int iiwa14_forward_dynamics(
         return IIWA14_STATUS_PIVOT;
     }
     const iiwa14_real_t t66 = parameters[XX4R] + (t8 - t59 + t60);
-    const iiwa14_real_t t68 = t34 * t40 - t32 * t36;
+    const iiwa14_real_t t68 = t34 * t40 - t32 * t36; /* link j5: column of the mass matrix */
     const iiwa14_real_t t69 = t34 * t31 + t32 * t33 + IIWA14_C(0.4) * t68;
-    const iiwa14_real_t t70 = t69 - parameters[XY4];
+    const iiwa14_real_t t70 = t69 - parameters[XY4]; /* link j5: inertia of it and all beyond */
+    /* link j4: inertia of it and all beyond */
     const iiwa14_real_t t72 = t67 * (t26 - t66) - t70 * (IIWA14_C(2.0) * t71);
     const iiwa14_real_t t73 = t67 * t72;
     const iiwa14_real_t t74 = parameters[ZZ3R] + (t66 + t73);
     const iiwa14_real_t t75 = t74 + IIWA14_C(2.56e4) * parameters[IA3];
-    const iiwa14_real_t t76 = t34 * t37 - t32 * t44;
+    const iiwa14_real_t t76 = t34 * t37 - t32 * t44; /* link j7: column of the mass matrix */
     const iiwa14_real_t t77 = t34 * t43 + t32 * t3 + IIWA14_C(0.4) * t76;
     const iiwa14_real_t t78 = t71 * t77 - t67 * t18;
     const iiwa14_real_t t79 = t78 * t4;
-    const iiwa14_real_t t80 = t32 * t48;
+    const iiwa14_real_t t80 = t32 * t48; /* link j6: column of the mass matrix */
     const iiwa14_real_t t81 = t32 * t8 - t34 * t47 + IIWA14_C(-0.4) * t80;
     const iiwa14_real_t t82 = t71 * t81 - t67 * t16;
     const iiwa14_real_t t83 = t82 + t78 * t5;
     const iiwa14_real_t t84 = t83 * t20;
-    const iiwa14_real_t t85 = t71 * t69 - t67 * t26;
+    const iiwa14_real_t t85 = t71 * t69 - t67 * t26; /* link j5: column of the mass matrix */
     const iiwa14_real_t t86 = t85 + t78 * t28 + t83 * t21;
     const iiwa14_real_t t87 = t86 * t53;
     const iiwa14_real_t t88 = t75 + t78 * t79 + t83 * t84 + t86 * t87;
-    const iiwa14_real_t t89 = t57 - t32 * t58 - parameters[XZ4];
+    const iiwa14_real_t t89 = t57 - t32 * t58 - parameters[XZ4]; /* link j5: inertia of it and all beyond */
     const iiwa14_real_t t90 = parameters[YZ4] + t42;
-    const iiwa14_real_t t91 = t71 * t89 - t67 * t90;
+    const iiwa14_real_t t91 = t71 * t89 - t67 * t90; /* link j4: column of the mass matrix */
     const iiwa14_real_t t92 = t91 + t78 * t55 + t83 * t63 + t86 * t54;
     const iiwa14_real_t t93 = IIWA14_C(1.0) / t64;
     const iiwa14_real_t t94 = t92 * t93;
@@ -257,34 +266,37 @@ int iiwa14_forward_dynamics(
         iiwa14_zero(out, 7);
         return IIWA14_STATUS_PIVOT;
     }
-    const iiwa14_real_t t97 = t70 + t71 * t72 - parameters[XZ3];
+    const iiwa14_real_t t97 = t70 + t71 * t72 - parameters[XZ3]; /* link j4: inertia of it and all beyond */
     const iiwa14_real_t t99 = parameters[YZ3] + t91;
     const iiwa14_real_t t101 = parameters[MY3R] + t41;
-    const iiwa14_real_t t102 = parameters[MX4] + t68;
+    const iiwa14_real_t t102 = parameters[MX4] + t68; /* link j5: inertia of it and all beyond */
     const iiwa14_real_t t103 = parameters[MY4R] - t48;
+    /* link j4: inertia of it and all beyond */
     const iiwa14_real_t t104 = parameters[MX3] + (t67 * t102 - t71 * t103);
+    /* link j3: column of the mass matrix */
     const iiwa14_real_t t105 = t98 * t97 - t100 * t99 + IIWA14_C(0.42) * (t100 * t101 + t98 * t104);
-    const iiwa14_real_t t106 = t67 * t77 + t71 * t18;
+    const iiwa14_real_t t106 = t67 * t77 + t71 * t18; /* link j7: column of the mass matrix */
     const iiwa14_real_t t107 = t67 * t45 + t71 * (t13 * t35);
     const iiwa14_real_t t108 = t98 * t106 + t100 * t46 + IIWA14_C(0.42) * (t100 * t107 + t98 * t76);
-    const iiwa14_real_t t109 = t67 * t81 + t71 * t16;
+    const iiwa14_real_t t109 = t67 * t81 + t71 * t16; /* link j6: column of the mass matrix */
     const iiwa14_real_t t110 = t67 * t49 - t71 * t39;
     const iiwa14_real_t t111 = t98 * t109 + t100 * t50 + IIWA14_C(0.42) * (t100 * t110 - t98 * t80);
     const iiwa14_real_t t112 = t111 + t108 * t5;
-    const iiwa14_real_t t113 = t67 * t69 + t71 * t26;
+    const iiwa14_real_t t113 = t67 * t69 + t71 * t26; /* link j5: column of the mass matrix */
     const iiwa14_real_t t114 = t67 * t41;
     const iiwa14_real_t t115 = t98 * t113 + t100 * t42 + IIWA14_C(0.42) * (t100 * t114 + t98 * t68);
     const iiwa14_real_t t116 = t115 + t108 * t28 + t112 * t21;
     const iiwa14_real_t t117 = t105 - t108 * t79 - t112 * t84 - t116 * t87;
-    const iiwa14_real_t t118 = t67 * t89 + t71 * t90;
+    const iiwa14_real_t t118 = t67 * t89 + t71 * t90; /* link j4: column of the mass matrix */
     const iiwa14_real_t t119 = t67 * t103 + t71 * t102;
     const iiwa14_real_t t120 = t98 * t118 + t100 * t61 + IIWA14_C(0.42) * (t100 * t119);
     const iiwa14_real_t t121 = t120 + t108 * t55 + t112 * t63 + t116 * t54;
     const iiwa14_real_t t122 = t117 + t121 * t94;
     const iiwa14_real_t t123 = IIWA14_C(1.0) / t95;
     const iiwa14_real_t t124 = t122 * t123;
-    const iiwa14_real_t t125 = parameters[XX3R] + (t26 - t73);
+    const iiwa14_real_t t125 = parameters[XX3R] + (t26 - t73); /* link j4: inertia of it and all beyond */
     const iiwa14_real_t t126 = parameters[XY3] + t118;
+    /* link j3: inertia of it and all beyond */
     const iiwa14_real_t t127 = t100 * (t61 - t125) + t126 * (IIWA14_C(2.0) * t98);
     const iiwa14_real_t t128 = t100 * t127;
     const iiwa14_real_t t129 = IIWA14_C(0.84) * t119;
@@ -305,19 +317,25 @@ int iiwa14_forward_dynamics(
         return IIWA14_STATUS_PIVOT;
     }
     const iiwa14_real_t t138 = parameters[XX2R] + (t61 - t128 + t129);
+    /* link j3: column of the mass matrix */
     const iiwa14_real_t t140 = t100 * t97 + t98 * t99 + IIWA14_C(0.42) * (t100 * t104 - t98 * t101);
+    /* link j2: inertia of it and all beyond */
     const iiwa14_real_t t142 = t139 * (t74 - t138) + (parameters[XY2] + t140) * (IIWA14_C(2.0) * t141);
     const iiwa14_real_t t143 = parameters[ZZ1R] + (t138 + t139 * t142);
+    /* link j7: column of the mass matrix */
     const iiwa14_real_t t144 = t98 * t46 - t100 * t106 + IIWA14_C(0.42) * (t98 * t107 - t100 * t76);
     const iiwa14_real_t t145 = t141 * t144 + t139 * t78;
     const iiwa14_real_t t146 = t145 * t4;
+    /* link j6: column of the mass matrix */
     const iiwa14_real_t t147 = t98 * t50 - t100 * t109 + IIWA14_C(0.42) * (t98 * t110 + t100 * t80);
     const iiwa14_real_t t148 = t141 * t147 + t139 * t82 + t145 * t5;
     const iiwa14_real_t t149 = t148 * t20;
+    /* link j5: column of the mass matrix */
     const iiwa14_real_t t150 = t98 * t42 - t100 * t113 + IIWA14_C(0.42) * (t98 * t114 - t100 * t68);
     const iiwa14_real_t t151 = t141 * t150 + t139 * t85 + t145 * t28 + t148 * t21;
     const iiwa14_real_t t152 = t151 * t53;
     const iiwa14_real_t t153 = t143 + t145 * t146 + t148 * t149 + t151 * t152;
+    /* link j4: column of the mass matrix */
     const iiwa14_real_t t154 = t98 * t61 - t100 * t118 + IIWA14_C(0.42) * (t98 * t119);
     const iiwa14_real_t t155 = t141 * t154 + t139 * t91 + t145 * t55 + t148 * t63;
     const iiwa14_real_t t156 = t155 + t151 * t54;
@@ -325,6 +343,7 @@ int iiwa14_forward_dynamics(
     const iiwa14_real_t t158 = t141 * t140 + t139 * t74 + t145 * t79 + t148 * t84;
     const iiwa14_real_t t159 = t156 * t94 - (t158 + t151 * t87);
     const iiwa14_real_t t160 = t159 * t123;
+    /* link j2: column of the mass matrix */
     const iiwa14_real_t t161 = t141 * (parameters[XZ2] + (t126 - t98 * t127)) + t139 * (parameters[YZ2]
         + t105);
     const iiwa14_real_t t162 = t161 - t145 * t131 - t148 * t132 - t151 * t133;
@@ -341,57 +360,57 @@ int iiwa14_forward_dynamics(
         iiwa14_zero(out, 7);
         return IIWA14_STATUS_PIVOT;
     }
-    const iiwa14_real_t t168 = t141 * dq[0];
-    const iiwa14_real_t t169 = t98 * dq[1] - t100 * t168;
+    const iiwa14_real_t t168 = t141 * dq[0]; /* link j2: motion */
+    const iiwa14_real_t t169 = t98 * dq[1] - t100 * t168; /* link j3: motion */
     const iiwa14_real_t t170 = t98 * t168 + t100 * dq[1];
     const iiwa14_real_t t171 = t169 * t170;
-    const iiwa14_real_t t172 = dq[1] * t168;
-    const iiwa14_real_t t173 = t172 + t171;
-    const iiwa14_real_t t174 = t139 * dq[0];
+    const iiwa14_real_t t172 = dq[1] * t168; /* link j2: motion */
+    const iiwa14_real_t t173 = t172 + t171; /* link j4: motion */
+    const iiwa14_real_t t174 = t139 * dq[0]; /* link j2: motion */
     const iiwa14_real_t t175 = t168 * t174;
     const iiwa14_real_t t176 = dq[1] * t174;
     const iiwa14_real_t t177 = IIWA14_C(-2.0) * t176;
-    const iiwa14_real_t t178 = t100 * t177 - t98 * t175;
+    const iiwa14_real_t t178 = t100 * t177 - t98 * t175; /* link j3: motion */
     const iiwa14_real_t t179 = dq[2] + t174;
     const iiwa14_real_t t180 = t170 * t179;
     const iiwa14_real_t t181 = t178 + t180;
-    const iiwa14_real_t t182 = t180 + t181;
+    const iiwa14_real_t t182 = t180 + t181; /* link j4: motion */
     const iiwa14_real_t t183 = t67 * t173 + t71 * t182;
     const iiwa14_real_t t184 = t67 * t169 + t71 * t179;
     const iiwa14_real_t t185 = dq[3] - t170;
     const iiwa14_real_t t186 = t184 * t185;
     const iiwa14_real_t t187 = t183 + t186;
-    const iiwa14_real_t t188 = t34 * t184 - t32 * t185;
+    const iiwa14_real_t t188 = t34 * t184 - t32 * t185; /* link j5: motion */
     const iiwa14_real_t t189 = t32 * t184 + t34 * t185;
     const iiwa14_real_t t190 = t188 * t189;
-    const iiwa14_real_t t191 = t187 - t190;
-    const iiwa14_real_t t192 = t100 * t175 + t98 * t177;
+    const iiwa14_real_t t191 = t187 - t190; /* link j6: motion */
+    const iiwa14_real_t t192 = t100 * t175 + t98 * t177; /* link j3: motion */
     const iiwa14_real_t t193 = t169 * t179;
     const iiwa14_real_t t194 = t192 + t193;
-    const iiwa14_real_t t195 = t71 * t169 - t67 * t179;
+    const iiwa14_real_t t195 = t71 * t169 - t67 * t179; /* link j4: motion */
     const iiwa14_real_t t196 = t184 * t195;
-    const iiwa14_real_t t197 = t194 + t196;
-    const iiwa14_real_t t198 = t67 * t182 - t71 * t173;
+    const iiwa14_real_t t197 = t194 + t196; /* link j5: motion */
+    const iiwa14_real_t t198 = t67 * t182 - t71 * t173; /* link j4: motion */
     const iiwa14_real_t t199 = t195 * t185;
     const iiwa14_real_t t200 = t198 - t199;
-    const iiwa14_real_t t201 = t200 - t199;
+    const iiwa14_real_t t201 = t200 - t199; /* link j5: motion */
     const iiwa14_real_t t202 = t34 * t201 - t32 * t197;
     const iiwa14_real_t t203 = t195 - dq[4];
     const iiwa14_real_t t204 = t189 * t203;
     const iiwa14_real_t t205 = t202 + t204;
-    const iiwa14_real_t t206 = t204 + t205;
+    const iiwa14_real_t t206 = t204 + t205; /* link j6: motion */
     const iiwa14_real_t t207 = t13 * t191 + t15 * t206;
     const iiwa14_real_t t208 = t15 * t203 - t13 * t188;
     const iiwa14_real_t t209 = dq[5] - t189;
     const iiwa14_real_t t210 = t208 * t209;
     const iiwa14_real_t t211 = t207 + t210;
-    const iiwa14_real_t t212 = t210 + t211;
-    const iiwa14_real_t t213 = t34 * t197 + t32 * t201;
+    const iiwa14_real_t t212 = t210 + t211; /* link j7: motion */
+    const iiwa14_real_t t213 = t34 * t197 + t32 * t201; /* link j5: motion */
     const iiwa14_real_t t214 = t188 * t203;
     const iiwa14_real_t t215 = t213 - t214;
-    const iiwa14_real_t t216 = t15 * t188 + t13 * t203;
+    const iiwa14_real_t t216 = t15 * t188 + t13 * t203; /* link j6: motion */
     const iiwa14_real_t t217 = t216 * t208;
-    const iiwa14_real_t t218 = t215 + t217;
+    const iiwa14_real_t t218 = t215 + t217; /* link j7: motion */
     const iiwa14_real_t t219 = t2 * t212 - t1 * t218;
     const iiwa14_real_t t220 = t2 * t209 - t1 * t216;
     const iiwa14_real_t t221 = t208 - dq[6];
@@ -400,172 +419,211 @@ int iiwa14_forward_dynamics(
     const iiwa14_real_t t224 = t2 * t218 + t1 * t212;
     const iiwa14_real_t t225 = t2 * t216 + t1 * t209;
     const iiwa14_real_t t226 = t225 * t221;
-    const iiwa14_real_t t227 = t224 - t226 - t226;
-    const iiwa14_real_t t228 = t13 * t206 - t15 * t191;
+    const iiwa14_real_t t227 = t224 - t226 - t226; /* link j7: force and moment */
+    const iiwa14_real_t t228 = t13 * t206 - t15 * t191; /* link j6: motion */
     const iiwa14_real_t t229 = t216 * t209;
     const iiwa14_real_t t230 = t228 + t229;
-    const iiwa14_real_t t231 = t225 * t220;
-    const iiwa14_real_t t232 = t230 + t231;
+    const iiwa14_real_t t231 = t225 * t220; /* link j7: motion */
+    const iiwa14_real_t t232 = t230 + t231; /* link j7: force and moment */
     const iiwa14_real_t t233 = parameters[ZZ7] * t222 - parameters[XX7R] * t223 + parameters[XY7] * t227
         - parameters[XZ7R] * t232;
-    const iiwa14_real_t t234 = t220 * t220;
+    const iiwa14_real_t t234 = t220 * t220; /* link j7: motion */
     const iiwa14_real_t t235 = t221 * t221;
-    const iiwa14_real_t t236 = IIWA14_C(-9.81) * t141;
-    const iiwa14_real_t t237 = t236 + IIWA14_C(-0.42) * t175;
+    const iiwa14_real_t t236 = IIWA14_C(-9.81) * t141; /* link j2: motion */
+    const iiwa14_real_t t237 = t236 + IIWA14_C(-0.42) * t175; /* link j3: motion */
     const iiwa14_real_t t238 = IIWA14_C(0.84) * t176;
     const iiwa14_real_t t239 = t100 * t237 + t98 * t238;
-    const iiwa14_real_t t240 = t168 * t168;
+    const iiwa14_real_t t240 = t168 * t168; /* link j2: motion */
     const iiwa14_real_t t241 = dq[1] * dq[1];
     const iiwa14_real_t t242 = IIWA14_C(9.81) * t139;
-    const iiwa14_real_t t243 = t242 + IIWA14_C(-0.42) * (t241 + t240);
-    const iiwa14_real_t t244 = t67 * t239 + t71 * t243;
-    const iiwa14_real_t t245 = t244 + IIWA14_C(-0.4) * t197;
-    const iiwa14_real_t t246 = t98 * t237 - t100 * t238;
-    const iiwa14_real_t t247 = t246 + IIWA14_C(0.4) * t201;
+    const iiwa14_real_t t243 = t242 + IIWA14_C(-0.42) * (t241 + t240); /* link j3: motion */
+    const iiwa14_real_t t244 = t67 * t239 + t71 * t243; /* link j4: motion */
+    const iiwa14_real_t t245 = t244 + IIWA14_C(-0.4) * t197; /* link j5: motion */
+    const iiwa14_real_t t246 = t98 * t237 - t100 * t238; /* link j3: motion */
+    const iiwa14_real_t t247 = t246 + IIWA14_C(0.4) * t201; /* link j5: motion */
     const iiwa14_real_t t248 = t34 * t245 - t32 * t247;
-    const iiwa14_real_t t249 = t184 * t184;
+    const iiwa14_real_t t249 = t184 * t184; /* link j4: motion */
     const iiwa14_real_t t250 = t185 * t185;
-    const iiwa14_real_t t251 = t249 + t250;
-    const iiwa14_real_t t252 = t71 * t239 - t67 * t243;
-    const iiwa14_real_t t253 = t252 + IIWA14_C(0.4) * t251;
-    const iiwa14_real_t t254 = t15 * t253 - t13 * t248;
+    const iiwa14_real_t t251 = t249 + t250; /* link j5: motion */
+    const iiwa14_real_t t252 = t71 * t239 - t67 * t243; /* link j4: motion */
+    const iiwa14_real_t t253 = t252 + IIWA14_C(0.4) * t251; /* link j5: motion */
+    const iiwa14_real_t t254 = t15 * t253 - t13 * t248; /* link j6: motion */
+    /* link j7: force and moment */
     const iiwa14_real_t t255 = t233 - parameters[YZ7R] * (t234 - t235) + parameters[MY7] * t254;
     const iiwa14_real_t t256 = t223 - t222;
     const iiwa14_real_t t257 = t231 - t230;
     const iiwa14_real_t t258 = t226 * (parameters[XX7R] - parameters[ZZ7]) - parameters[XY7] * t256
         + parameters[YZ7R] * t257;
-    const iiwa14_real_t t259 = t225 * t225;
+    const iiwa14_real_t t259 = t225 * t225; /* link j7: motion */
+    /* link j7: force and moment */
     const iiwa14_real_t t260 = t258 + parameters[XZ7R] * (t259 - t235) - parameters[MX7] * t254;
-    const iiwa14_real_t t261 = t229 + t230;
+    const iiwa14_real_t t261 = t229 + t230; /* link j7: motion */
     const iiwa14_real_t t262 = t215 - t217;
+    /* link j6: force and moment */
     const iiwa14_real_t t263 = parameters[XX6R] * t211 + parameters[ZZ6R] * t210 - parameters[XY6] * t261
         - parameters[XZ6] * t262;
-    const iiwa14_real_t t264 = t208 * t208;
+    const iiwa14_real_t t264 = t208 * t208; /* link j6: motion */
     const iiwa14_real_t t265 = t209 * t209;
-    const iiwa14_real_t t266 = t32 * t245 + t34 * t247;
+    const iiwa14_real_t t266 = t32 * t245 + t34 * t247; /* link j5: motion */
+    /* link j7: what it passes on */
     const iiwa14_real_t t267 = t263 + parameters[YZ6] * (t264 - t265) - parameters[MY6R] * t266 - (t2 * t255
         - t1 * t260);
+    /* link j7: force and moment */
     const iiwa14_real_t t268 = parameters[XX7R] * t231 - parameters[ZZ7] * t230 + parameters[YZ7R] * t224
         - parameters[XZ7R] * t219;
-    const iiwa14_real_t t269 = t15 * t248 + t13 * t253;
+    const iiwa14_real_t t269 = t15 * t248 + t13 * t253; /* link j6: motion */
+    /* link j7: force and moment */
     const iiwa14_real_t t270 = parameters[MX7] * (t1 * t269 + t2 * t266) + parameters[MY7] * (t2 * t269
         - t1 * t266);
     const iiwa14_real_t t271 = t268 + parameters[XY7] * (t234 - t259) + t270;
+    /* link j6: force and moment */
     const iiwa14_real_t t272 = parameters[XY6] * t212 - t229 * (parameters[ZZ6R] - parameters[XX6R])
         - parameters[YZ6] * t218;
-    const iiwa14_real_t t273 = t216 * t216;
+    const iiwa14_real_t t273 = t216 * t216; /* link j6: motion */
+    /* link j7: what it passes on */
     const iiwa14_real_t t274 = t272 + parameters[XZ6] * (t265 - t273) + parameters[MX6] * t266 + t271;
-    const iiwa14_real_t t275 = t215 - t214;
+    const iiwa14_real_t t275 = t215 - t214; /* link j6: motion */
     const iiwa14_real_t t276 = t187 + t190;
+    /* link j5: force and moment */
     const iiwa14_real_t t277 = parameters[XY5] * t275 - (parameters[XX5R] * t205 + parameters[ZZ5R] * t204)
         + parameters[XZ5] * t276;
-    const iiwa14_real_t t278 = t189 * t189;
+    const iiwa14_real_t t278 = t189 * t189; /* link j5: motion */
     const iiwa14_real_t t279 = t203 * t203;
+    /* link j6: what it passes on */
     const iiwa14_real_t t280 = t277 + parameters[YZ5] * (t279 - t278) + parameters[MY5R] * t253 + (t13 * t274
         - t15 * t267);
+    /* link j6: force and moment */
     const iiwa14_real_t t281 = parameters[ZZ6R] * t215 + parameters[XX6R] * t217 + parameters[YZ6] * t228
         - parameters[XZ6] * t207;
     const iiwa14_real_t t282 = t281 - parameters[XY6] * (t273 - t264) - (parameters[MX6] * t254
         - parameters[MY6R] * t269);
-    const iiwa14_real_t t283 = t282 + (t1 * t255 + t2 * t260);
+    const iiwa14_real_t t283 = t282 + (t1 * t255 + t2 * t260); /* link j7: what it passes on */
+    /* link j5: force and moment */
     const iiwa14_real_t t284 = t214 * (parameters[XX5R] - parameters[ZZ5R]) - parameters[XY5] * t206
         + parameters[YZ5] * t191;
-    const iiwa14_real_t t285 = t188 * t188;
+    const iiwa14_real_t t285 = t188 * t188; /* link j5: motion */
+    /* link j6: what it passes on */
     const iiwa14_real_t t286 = t284 + parameters[XZ5] * (t285 - t279) - parameters[MX5] * t253 + t283;
+    /* link j7: force and moment */
     const iiwa14_real_t t287 = parameters[MX7] * (t234 + t235) - parameters[MY7] * t257;
     const iiwa14_real_t t288 = parameters[MX7] * t232 - parameters[MY7] * (t259 + t235);
+    /* link j7: what it passes on */
     const iiwa14_real_t t289 = parameters[MX6] * (t264 + t265) - parameters[MY6R] * t218 + (t2 * t287
         + t1 * t288);
     const iiwa14_real_t t290 = parameters[MX6] * t262 + parameters[MY6R] * (t273 + t265)
         + (parameters[MX7] * t227 + parameters[MY7] * t256);
+    /* link j6: what it passes on */
     const iiwa14_real_t t291 = parameters[MX5] * (t278 + t279) - parameters[MY5R] * t191 + (t15 * t289
         - t13 * t290);
+    /* link j7: what it passes on */
     const iiwa14_real_t t292 = parameters[MX6] * t261 + parameters[MY6R] * t212 + (t2 * t288 - t1 * t287);
+    /* link j6: what it passes on */
     const iiwa14_real_t t293 = t292 - (parameters[MX5] * t276 + parameters[MY5R] * (t285 + t279));
-    const iiwa14_real_t t294 = t34 * t293 - t32 * t291;
-    const iiwa14_real_t t295 = t186 + t187;
+    const iiwa14_real_t t294 = t34 * t293 - t32 * t291; /* link j5: what it passes on */
+    const iiwa14_real_t t295 = t186 + t187; /* link j5: motion */
     const iiwa14_real_t t296 = t194 - t196;
+    /* link j4: force and moment */
     const iiwa14_real_t t297 = parameters[ZZ4R] * t199 - parameters[XX4R] * t200 + parameters[XY4] * t295
         - parameters[XZ4] * t296;
-    const iiwa14_real_t t298 = t195 * t195;
+    const iiwa14_real_t t298 = t195 * t195; /* link j4: motion */
+    /* link j5: what it passes on */
     const iiwa14_real_t t299 = t297 + parameters[YZ4] * (t250 - t298) - parameters[MY4R] * t246 + (t34 * t280
         - t32 * t286 + IIWA14_C(0.4) * t294);
+    /* link j5: force and moment */
     const iiwa14_real_t t300 = parameters[ZZ5R] * t187 - parameters[XX5R] * t190 + parameters[YZ5] * t213
         - parameters[XZ5] * t202;
     const iiwa14_real_t t301 = t300 + parameters[XY5] * (t278 - t285) + (parameters[MX5] * t266
         + parameters[MY5R] * t248);
-    const iiwa14_real_t t302 = t301 + (t13 * t267 + t15 * t274);
+    const iiwa14_real_t t302 = t301 + (t13 * t267 + t15 * t274); /* link j6: what it passes on */
+    /* link j4: force and moment */
     const iiwa14_real_t t303 = t186 * (parameters[XX4R] - parameters[ZZ4R]) + parameters[XY4] * t201
         + parameters[YZ4] * t197;
+    /* link j5: what it passes on */
     const iiwa14_real_t t304 = parameters[XZ4] * (t249 - t250) - t303 + parameters[MX4] * t246 + t302;
+    /* link j3: force and moment */
     const iiwa14_real_t t305 = parameters[XY3] * (t193 + t194) - (parameters[XX3R] * t181
         + parameters[ZZ3R] * t180);
-    const iiwa14_real_t t306 = t172 - t171;
-    const iiwa14_real_t t307 = t170 * t170;
+    const iiwa14_real_t t306 = t172 - t171; /* link j4: motion */
+    const iiwa14_real_t t307 = t170 * t170; /* link j3: motion */
     const iiwa14_real_t t308 = t179 * t179;
+    /* link j3: force and moment */
     const iiwa14_real_t t309 = t305 + parameters[XZ3] * t306 - parameters[YZ3] * (t307 - t308)
         - parameters[MY3R] * t243;
-    const iiwa14_real_t t310 = t309 + (t67 * t299 - t71 * t304);
-    const iiwa14_real_t t311 = t34 * t291 + t32 * t293;
+    const iiwa14_real_t t310 = t309 + (t67 * t299 - t71 * t304); /* link j4: what it passes on */
+    const iiwa14_real_t t311 = t34 * t291 + t32 * t293; /* link j5: what it passes on */
+    /* link j4: force and moment */
     const iiwa14_real_t t312 = parameters[ZZ4R] * t194 + parameters[XX4R] * t196 - parameters[YZ4] * t183
         + parameters[XZ4] * t198;
     const iiwa14_real_t t313 = t312 + parameters[XY4] * (t249 - t298) - (parameters[MX4] * t252
         + parameters[MY4R] * t244);
+    /* link j5: what it passes on */
     const iiwa14_real_t t314 = t313 + (t32 * t280 + t34 * t286 + IIWA14_C(0.4) * t311);
+    /* link j3: force and moment */
     const iiwa14_real_t t315 = parameters[YZ3] * t173 - (t193 * (parameters[XX3R] - parameters[ZZ3R])
         + parameters[XY3] * t182);
-    const iiwa14_real_t t316 = t169 * t169;
+    const iiwa14_real_t t316 = t169 * t169; /* link j3: motion */
+    /* link j4: what it passes on */
     const iiwa14_real_t t317 = t315 + parameters[XZ3] * (t316 - t308) + parameters[MX3] * t243 + t314;
     const iiwa14_real_t t318 = t67 * (parameters[MX4] * (t298 + t250) + parameters[MY4R] * t197 + t311);
+    /* link j6: what it passes on */
     const iiwa14_real_t t319 = parameters[MX5] * t275 + parameters[MY5R] * t206 + (t13 * t289 + t15 * t290);
+    /* link j4: what it passes on */
     const iiwa14_real_t t320 = t318 + t71 * (parameters[MX4] * t296 - parameters[MY4R] * t251 + t319);
     const iiwa14_real_t t321 = parameters[MX3] * (t307 + t308) - parameters[MY3R] * t173 + t320;
     const iiwa14_real_t t322 = parameters[MX3] * t306 + parameters[MY3R] * (t316 + t308) - (t294
         - (parameters[MX4] * t295 + parameters[MY4R] * t201));
+    /* link j3: what it passes on */
     const iiwa14_real_t t323 = t98 * t317 - t100 * t310 + IIWA14_C(0.42) * (t98 * t321 + t100 * t322);
+    /* link j2: force and moment */
     const iiwa14_real_t t324 = parameters[XY2] * (IIWA14_C(2.0) * t172) - (parameters[XX2R] * t176
         + parameters[ZZ2R] * t176);
-    const iiwa14_real_t t325 = t174 * t174;
+    const iiwa14_real_t t325 = t174 * t174; /* link j2: motion */
+    /* link j3: what it passes on */
     const iiwa14_real_t t326 = t324 + parameters[XZ2] * t175 + parameters[YZ2] * (t325 - t241) + t323;
+    /* link j3: force and moment */
     const iiwa14_real_t t327 = parameters[ZZ3R] * t172 + parameters[XX3R] * t171 + parameters[YZ3] * t192
         - parameters[XZ3] * t178;
     const iiwa14_real_t t328 = t327 + parameters[XY3] * (t307 - t316) + (parameters[MX3] * t246
         + parameters[MY3R] * t239);
-    const iiwa14_real_t t329 = t328 + (t71 * t299 + t67 * t304);
+    const iiwa14_real_t t329 = t328 + (t71 * t299 + t67 * t304); /* link j4: what it passes on */
+    /* link j2: force and moment */
     const iiwa14_real_t t330 = t172 * (parameters[ZZ2R] - parameters[XX2R]) + parameters[XY2] * t177
         - parameters[YZ2] * t175;
+    /* link j2: what it passes on */
     const iiwa14_real_t t331 = t141 * t326 + t139 * (t330 + parameters[XZ2] * (t241 - t240) + t329);
-    const iiwa14_real_t t332 = iiwa14_sign(dq[0]);
+    const iiwa14_real_t t332 = iiwa14_sign(dq[0]); /* joint j1: coulomb_friction */
     const iiwa14_real_t t333 = IIWA14_C(160.0) * (parameters[FV1] * (IIWA14_C(-160.0) * dq[0])
         - parameters[FC1] * t332) + t331;
-    const iiwa14_real_t t334 = iiwa14_sign(dq[6]);
+    const iiwa14_real_t t334 = iiwa14_sign(dq[6]); /* joint j7: coulomb_friction */
     const iiwa14_real_t t335 = IIWA14_C(160.0) * (parameters[FV7] * (IIWA14_C(160.0) * dq[6])
         + parameters[FC7] * t334) - t271;
     const iiwa14_real_t t336 = IIWA14_C(8.0) * input[6] - t335;
-    const iiwa14_real_t t337 = iiwa14_sign(dq[5]);
+    const iiwa14_real_t t337 = iiwa14_sign(dq[5]); /* joint j6: coulomb_friction */
     const iiwa14_real_t t338 = IIWA14_C(160.0) * (parameters[FV6] * (IIWA14_C(160.0) * dq[5])
         + parameters[FC6] * t337) - t283;
     const iiwa14_real_t t339 = IIWA14_C(8.0) * input[5] - t338 + t336 * t5;
     const iiwa14_real_t t340 = IIWA14_C(16.0) * input[0] + t333 - t336 * t146 - t339 * t149;
-    const iiwa14_real_t t341 = iiwa14_sign(dq[4]);
+    const iiwa14_real_t t341 = iiwa14_sign(dq[4]); /* joint j5: coulomb_friction */
     const iiwa14_real_t t342 = IIWA14_C(1.0e2) * (parameters[FV5] * (IIWA14_C(1.0e2) * dq[4])
         + parameters[FC5] * t341) - t302;
     const iiwa14_real_t t343 = IIWA14_C(8.0) * input[4] - t342 + t336 * t28 + t339 * t21;
-    const iiwa14_real_t t344 = iiwa14_sign(dq[3]);
+    const iiwa14_real_t t344 = iiwa14_sign(dq[3]); /* joint j4: coulomb_friction */
     const iiwa14_real_t t345 = IIWA14_C(160.0) * (parameters[FV4] * (IIWA14_C(160.0) * dq[3])
         + parameters[FC4] * t344) + t314;
     const iiwa14_real_t t346 = IIWA14_C(16.0) * input[3] - t345 + t336 * t55 + t339 * t63;
     const iiwa14_real_t t347 = t346 + t343 * t54;
-    const iiwa14_real_t t348 = iiwa14_sign(dq[2]);
+    const iiwa14_real_t t348 = iiwa14_sign(dq[2]); /* joint j3: coulomb_friction */
     const iiwa14_real_t t349 = IIWA14_C(160.0) * (parameters[FV3] * (IIWA14_C(-160.0) * dq[2])
         - parameters[FC3] * t348) + t329;
     const iiwa14_real_t t350 = IIWA14_C(16.0) * input[2] + t349 - t336 * t79 - t339 * t84;
     const iiwa14_real_t t351 = t350 - t343 * t87 + t347 * t94;
     const iiwa14_real_t t352 = t340 - t343 * t152 + t347 * t157 + t351 * t160;
+    /* link j3: what it passes on */
     const iiwa14_real_t t353 = t98 * t310 + t100 * t317 + IIWA14_C(0.42) * (t100 * t321 - t98 * t322);
+    /* link j2: force and moment */
     const iiwa14_real_t t354 = parameters[XX2R] * t175 + parameters[XY2] * (t325 - t240)
         + (parameters[MX2] * t242 + parameters[MY2R] * t236);
-    const iiwa14_real_t t355 = iiwa14_sign(dq[1]);
+    const iiwa14_real_t t355 = iiwa14_sign(dq[1]); /* joint j2: coulomb_friction */
     const iiwa14_real_t t356 = IIWA14_C(160.0) * (parameters[FV2] * (IIWA14_C(-160.0) * dq[1])
         - parameters[FC2] * t355) + (t354 + t353);
     const iiwa14_real_t t357 = IIWA14_C(16.0) * input[1] + t356 - t336 * t131 - t339 * t132;

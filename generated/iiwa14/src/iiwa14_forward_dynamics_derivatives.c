@@ -7,7 +7,7 @@
  * Arm iiwa14, description 4f01a5afe35e97fd.
  * SPDX-License-Identifier: 0BSD
  *
- * Operations: 4854 (2695 mul, 2159 add, 0 neg), 7 div, 12 trig, 7 other.
+ * Operations: 4854 (2695 mul, 2159 add, 0 neg), 7 div, 12 trig, 7 other calls (sign, select and the like).
  *
  * @param[in]   q             [7]   [rad]                    joint coordinates; norm at most 10000
  * @param[in]   dq            [7]   [rad/s]                  joint velocities; norm at most 100000
@@ -15,9 +15,9 @@
  *                                                           norm at most 1e+09
  * @param[in]   parameters    [62]                           base parameters; norm at most 1e+09
  * @param[out]  ddq           [7]   [rad/s^2]                joint accelerations
- * @param[out]  ddq_by_q      [49]  [(rad/s^2) per (rad)]    d ddq / d q; 7 x 7, row-major
+ * @param[out]  ddq_by_q      [49]  [(rad/s^2) per rad]      d ddq / d q; 7 x 7, row-major
  * @param[out]  ddq_by_dq     [49]  [(rad/s^2) per (rad/s)]  d ddq / d dq; 7 x 7, row-major
- * @param[out]  ddq_by_input  [49]  [(rad/s^2) per (A)]      d ddq / d input; 7 x 7, row-major
+ * @param[out]  ddq_by_input  [49]  [(rad/s^2) per A]        d ddq / d input; 7 x 7, row-major
  *
  * Coordinates:
  *
@@ -96,11 +96,11 @@
  */
 #include "iiwa14_private.h"
 
-#if IIWA14_GENERATION != 0x27C72E36UL
+#if IIWA14_GENERATION != 0x1E31C9F2UL
 #error "iiwa14.h and iiwa14_forward_dynamics_derivatives.c are of different generations: generate the arm again"
 #endif
 
-int iiwa14_forward_dynamics_derivatives(
+iiwa14_status_t iiwa14_forward_dynamics_derivatives(
     const iiwa14_real_t q[IIWA14_N_JOINTS],
     const iiwa14_real_t dq[IIWA14_N_JOINTS],
     const iiwa14_real_t input[IIWA14_N_JOINTS],
@@ -114,7 +114,7 @@ int iiwa14_forward_dynamics_derivatives(
         XZ4, YZ4, ZZ4R, MX4, MY4R, XX5R, XY5, XZ5, YZ5, ZZ5R, MX5, MY5R, XX6R, XY6, XZ6, YZ6, ZZ6R, MX6, MY6R,
         XX7R, XY7, XZ7R, YZ7R, ZZ7, MX7, MY7, FV1, FC1, FV2, FC2, FV3, FC3, IA3, FV4, FC4, IA4, FV5, FC5, IA5,
         FV6, FC6, IA6, FV7, FC7, IA7 };
-    int status = IIWA14_STATUS_OK;
+    iiwa14_status_t status = IIWA14_STATUS_OK;
 
     if (!iiwa14_within_joints(q, IIWA14_C(1.0e8))
         || !iiwa14_within_joints(dq, IIWA14_C(1.0e10))
@@ -150,9 +150,11 @@ int iiwa14_forward_dynamics_derivatives(
         iiwa14_zero(ddq_by_input, 49);
         return IIWA14_STATUS_PIVOT;
     }
+    /* link j7: column of the mass matrix */
     const iiwa14_real_t t3 = t1 * parameters[XZ7R] + t2 * parameters[YZ7R];
     const iiwa14_real_t t4 = IIWA14_C(1.0) / t0;
     const iiwa14_real_t t5 = t3 * t4;
+    /* link j7: inertia of it and all beyond */
     const iiwa14_real_t t6 = parameters[XY7] * (IIWA14_C(2.0) * t1) - t2 * parameters[XX7R];
     const iiwa14_real_t t7 = t2 * t6;
     const iiwa14_real_t t8 = parameters[ZZ6R] + (parameters[XX7R] + t7);
@@ -175,14 +177,16 @@ int iiwa14_forward_dynamics_derivatives(
     }
     const iiwa14_real_t t12 = t1 * t6 - parameters[XY7] - parameters[XZ6];
     const iiwa14_real_t t14 = t3 - parameters[YZ6];
-    const iiwa14_real_t t16 = t13 * t12 + t15 * t14;
+    const iiwa14_real_t t16 = t13 * t12 + t15 * t14; /* link j6: column of the mass matrix */
+    /* link j7: column of the mass matrix */
     const iiwa14_real_t t17 = t1 * parameters[YZ7R] - t2 * parameters[XZ7R];
     const iiwa14_real_t t18 = t13 * t17 + t15 * parameters[ZZ7];
     const iiwa14_real_t t19 = t18 * t5 - t16;
     const iiwa14_real_t t20 = IIWA14_C(1.0) / t10;
     const iiwa14_real_t t21 = t19 * t20;
-    const iiwa14_real_t t22 = parameters[XX6R] - t7;
+    const iiwa14_real_t t22 = parameters[XX6R] - t7; /* link j7: inertia of it and all beyond */
     const iiwa14_real_t t23 = parameters[XY6] + t17;
+    /* link j6: inertia of it and all beyond */
     const iiwa14_real_t t24 = t15 * (t22 - parameters[ZZ7]) + t23 * (IIWA14_C(-2.0) * t13);
     const iiwa14_real_t t25 = t15 * t24;
     const iiwa14_real_t t26 = parameters[ZZ5R] + (t22 - t25);
@@ -206,19 +210,21 @@ int iiwa14_forward_dynamics_derivatives(
     }
     const iiwa14_real_t t31 = t23 + t13 * t24 - parameters[XZ5];
     const iiwa14_real_t t33 = parameters[YZ5] + t16;
+    /* link j7: column of the mass matrix */
     const iiwa14_real_t t35 = t2 * parameters[MY7] + t1 * parameters[MX7];
-    const iiwa14_real_t t36 = parameters[MY5R] + t35;
+    const iiwa14_real_t t36 = parameters[MY5R] + t35; /* link j6: inertia of it and all beyond */
+    /* link j7: column of the mass matrix */
     const iiwa14_real_t t37 = t2 * parameters[MX7] - t1 * parameters[MY7];
-    const iiwa14_real_t t38 = parameters[MX6] + t37;
-    const iiwa14_real_t t39 = t15 * t38 - t13 * parameters[MY6R];
-    const iiwa14_real_t t40 = parameters[MX5] + t39;
-    const iiwa14_real_t t41 = t34 * t36 + t32 * t40;
+    const iiwa14_real_t t38 = parameters[MX6] + t37; /* link j7: inertia of it and all beyond */
+    const iiwa14_real_t t39 = t15 * t38 - t13 * parameters[MY6R]; /* link j6: column of the mass matrix */
+    const iiwa14_real_t t40 = parameters[MX5] + t39; /* link j6: inertia of it and all beyond */
+    const iiwa14_real_t t41 = t34 * t36 + t32 * t40; /* link j5: column of the mass matrix */
     const iiwa14_real_t t42 = t32 * t31 - t34 * t33 + IIWA14_C(0.4) * t41;
-    const iiwa14_real_t t43 = t15 * t17 - t13 * parameters[ZZ7];
+    const iiwa14_real_t t43 = t15 * t17 - t13 * parameters[ZZ7]; /* link j7: column of the mass matrix */
     const iiwa14_real_t t44 = t15 * t35;
     const iiwa14_real_t t45 = t34 * t44 + t32 * t37;
     const iiwa14_real_t t46 = t32 * t43 - t34 * t3 + IIWA14_C(0.4) * t45;
-    const iiwa14_real_t t47 = t13 * t14 - t15 * t12;
+    const iiwa14_real_t t47 = t13 * t14 - t15 * t12; /* link j6: column of the mass matrix */
     const iiwa14_real_t t48 = t15 * parameters[MY6R] + t13 * t38;
     const iiwa14_real_t t49 = t34 * t48;
     const iiwa14_real_t t50 = IIWA14_C(0.4) * t49 - (t32 * t47 + t34 * t8);
@@ -227,8 +233,10 @@ int iiwa14_forward_dynamics_derivatives(
     const iiwa14_real_t t53 = IIWA14_C(1.0) / t29;
     const iiwa14_real_t t54 = t52 * t53;
     const iiwa14_real_t t55 = t46 * t4;
+    /* link j6: inertia of it and all beyond */
     const iiwa14_real_t t56 = parameters[XX5R] + (parameters[ZZ7] + t25);
     const iiwa14_real_t t57 = parameters[XY5] + t47;
+    /* link j5: inertia of it and all beyond */
     const iiwa14_real_t t58 = t34 * (t56 - t8) + t57 * (IIWA14_C(-2.0) * t32);
     const iiwa14_real_t t59 = t34 * t58;
     const iiwa14_real_t t60 = IIWA14_C(-0.8) * t48;
@@ -252,29 +260,30 @@ int iiwa14_forward_dynamics_derivatives(
         return IIWA14_STATUS_PIVOT;
     }
     const iiwa14_real_t t66 = parameters[XX4R] + (t8 + t59 + t60);
-    const iiwa14_real_t t68 = t34 * t40 - t32 * t36;
+    const iiwa14_real_t t68 = t34 * t40 - t32 * t36; /* link j5: column of the mass matrix */
     const iiwa14_real_t t69 = t34 * t31 + t32 * t33 + IIWA14_C(0.4) * t68;
-    const iiwa14_real_t t70 = t69 - parameters[XY4];
+    const iiwa14_real_t t70 = t69 - parameters[XY4]; /* link j5: inertia of it and all beyond */
+    /* link j4: inertia of it and all beyond */
     const iiwa14_real_t t72 = t67 * (t26 - t66) - t70 * (IIWA14_C(2.0) * t71);
     const iiwa14_real_t t73 = t67 * t72;
     const iiwa14_real_t t74 = parameters[ZZ3R] + (t66 + t73);
     const iiwa14_real_t t75 = t74 + IIWA14_C(2.56e4) * parameters[IA3];
-    const iiwa14_real_t t76 = t32 * t44 - t34 * t37;
+    const iiwa14_real_t t76 = t32 * t44 - t34 * t37; /* link j7: column of the mass matrix */
     const iiwa14_real_t t77 = t34 * t43 + t32 * t3 + IIWA14_C(-0.4) * t76;
     const iiwa14_real_t t78 = t67 * t18 - t71 * t77;
     const iiwa14_real_t t79 = t78 * t4;
-    const iiwa14_real_t t80 = t32 * t48;
+    const iiwa14_real_t t80 = t32 * t48; /* link j6: column of the mass matrix */
     const iiwa14_real_t t81 = t32 * t8 - t34 * t47 + IIWA14_C(-0.4) * t80;
     const iiwa14_real_t t82 = t67 * t16 - t71 * t81;
     const iiwa14_real_t t83 = t82 - t78 * t5;
     const iiwa14_real_t t84 = t83 * t20;
-    const iiwa14_real_t t85 = t67 * t26 - t71 * t69;
+    const iiwa14_real_t t85 = t67 * t26 - t71 * t69; /* link j5: column of the mass matrix */
     const iiwa14_real_t t86 = t85 - t78 * t28 + t83 * t21;
     const iiwa14_real_t t87 = t86 * t53;
     const iiwa14_real_t t88 = t75 - t78 * t79 - t83 * t84 - t86 * t87;
-    const iiwa14_real_t t89 = t57 + t32 * t58 - parameters[XZ4];
+    const iiwa14_real_t t89 = t57 + t32 * t58 - parameters[XZ4]; /* link j5: inertia of it and all beyond */
     const iiwa14_real_t t90 = parameters[YZ4] + t42;
-    const iiwa14_real_t t91 = t67 * t90 - t71 * t89;
+    const iiwa14_real_t t91 = t67 * t90 - t71 * t89; /* link j4: column of the mass matrix */
     const iiwa14_real_t t92 = t91 - t78 * t55 + t83 * t63 + t86 * t54;
     const iiwa14_real_t t93 = IIWA14_C(1.0) / t64;
     const iiwa14_real_t t94 = t92 * t93;
@@ -294,32 +303,32 @@ int iiwa14_forward_dynamics_derivatives(
         iiwa14_zero(ddq_by_input, 49);
         return IIWA14_STATUS_PIVOT;
     }
-    const iiwa14_real_t t97 = t70 + t71 * t72 - parameters[XZ3];
+    const iiwa14_real_t t97 = t70 + t71 * t72 - parameters[XZ3]; /* link j4: inertia of it and all beyond */
     const iiwa14_real_t t99 = parameters[YZ3] - t91;
     const iiwa14_real_t t101 = parameters[MY3R] + t41;
-    const iiwa14_real_t t102 = parameters[MX4] + t68;
+    const iiwa14_real_t t102 = parameters[MX4] + t68; /* link j5: inertia of it and all beyond */
     const iiwa14_real_t t103 = parameters[MY4R] - t48;
-    const iiwa14_real_t t104 = t67 * t102 - t71 * t103;
-    const iiwa14_real_t t105 = parameters[MX3] + t104;
-    const iiwa14_real_t t106 = t100 * t101 + t98 * t105;
+    const iiwa14_real_t t104 = t67 * t102 - t71 * t103; /* link j4: column of the mass matrix */
+    const iiwa14_real_t t105 = parameters[MX3] + t104; /* link j4: inertia of it and all beyond */
+    const iiwa14_real_t t106 = t100 * t101 + t98 * t105; /* link j3: column of the mass matrix */
     const iiwa14_real_t t107 = t98 * t97 - t100 * t99 + IIWA14_C(0.42) * t106;
-    const iiwa14_real_t t108 = t67 * t77 + t71 * t18;
+    const iiwa14_real_t t108 = t67 * t77 + t71 * t18; /* link j7: column of the mass matrix */
     const iiwa14_real_t t109 = t13 * t35;
     const iiwa14_real_t t110 = t67 * t45 + t71 * t109;
     const iiwa14_real_t t111 = t100 * t110 - t98 * t76;
     const iiwa14_real_t t112 = t98 * t108 + t100 * t46 + IIWA14_C(0.42) * t111;
-    const iiwa14_real_t t113 = t67 * t81 + t71 * t16;
+    const iiwa14_real_t t113 = t67 * t81 + t71 * t16; /* link j6: column of the mass matrix */
     const iiwa14_real_t t114 = t67 * t49 - t71 * t39;
     const iiwa14_real_t t115 = t100 * t114 - t98 * t80;
     const iiwa14_real_t t116 = t98 * t113 + t100 * t50 + IIWA14_C(0.42) * t115;
     const iiwa14_real_t t117 = t116 - t112 * t5;
-    const iiwa14_real_t t118 = t67 * t69 + t71 * t26;
+    const iiwa14_real_t t118 = t67 * t69 + t71 * t26; /* link j5: column of the mass matrix */
     const iiwa14_real_t t119 = t67 * t41;
     const iiwa14_real_t t120 = t100 * t119 + t98 * t68;
     const iiwa14_real_t t121 = t98 * t118 + t100 * t42 + IIWA14_C(0.42) * t120;
     const iiwa14_real_t t122 = t121 - t112 * t28 + t117 * t21;
     const iiwa14_real_t t123 = t107 - t112 * t79 - t117 * t84 - t122 * t87;
-    const iiwa14_real_t t124 = t67 * t89 + t71 * t90;
+    const iiwa14_real_t t124 = t67 * t89 + t71 * t90; /* link j4: column of the mass matrix */
     const iiwa14_real_t t125 = t67 * t103 + t71 * t102;
     const iiwa14_real_t t126 = t100 * t125;
     const iiwa14_real_t t127 = t98 * t124 + t100 * t61 + IIWA14_C(0.42) * t126;
@@ -327,8 +336,9 @@ int iiwa14_forward_dynamics_derivatives(
     const iiwa14_real_t t129 = t123 - t128 * t94;
     const iiwa14_real_t t130 = IIWA14_C(1.0) / t95;
     const iiwa14_real_t t131 = t129 * t130;
-    const iiwa14_real_t t132 = t73 - t26 - parameters[XX3R];
+    const iiwa14_real_t t132 = t73 - t26 - parameters[XX3R]; /* link j4: inertia of it and all beyond */
     const iiwa14_real_t t133 = parameters[XY3] + t124;
+    /* link j3: inertia of it and all beyond */
     const iiwa14_real_t t134 = t100 * (t61 + t132) + t133 * (IIWA14_C(2.0) * t98);
     const iiwa14_real_t t135 = t100 * t134;
     const iiwa14_real_t t136 = IIWA14_C(-0.84) * t125;
@@ -355,25 +365,26 @@ int iiwa14_forward_dynamics_derivatives(
         return IIWA14_STATUS_PIVOT;
     }
     const iiwa14_real_t t145 = t135 - t61 + t136 - parameters[XX2R];
-    const iiwa14_real_t t147 = t100 * t105 - t98 * t101;
+    const iiwa14_real_t t147 = t100 * t105 - t98 * t101; /* link j3: column of the mass matrix */
     const iiwa14_real_t t148 = t100 * t97 + t98 * t99 + IIWA14_C(0.42) * t147;
-    const iiwa14_real_t t149 = parameters[XY2] + t148;
+    const iiwa14_real_t t149 = parameters[XY2] + t148; /* link j3: inertia of it and all beyond */
+    /* link j2: inertia of it and all beyond */
     const iiwa14_real_t t151 = t146 * (t146 * (t74 + t145) + t149 * (IIWA14_C(2.0) * t150));
     const iiwa14_real_t t152 = parameters[ZZ1R] + (t151 - t145);
-    const iiwa14_real_t t153 = t98 * t110 + t100 * t76;
+    const iiwa14_real_t t153 = t98 * t110 + t100 * t76; /* link j7: column of the mass matrix */
     const iiwa14_real_t t154 = t98 * t46 - t100 * t108 + IIWA14_C(0.42) * t153;
     const iiwa14_real_t t155 = t150 * t154 - t146 * t78;
     const iiwa14_real_t t156 = t155 * t4;
-    const iiwa14_real_t t157 = t98 * t114 + t100 * t80;
+    const iiwa14_real_t t157 = t98 * t114 + t100 * t80; /* link j6: column of the mass matrix */
     const iiwa14_real_t t158 = t98 * t50 - t100 * t113 + IIWA14_C(0.42) * t157;
     const iiwa14_real_t t159 = t150 * t158 - t146 * t82 - t155 * t5;
     const iiwa14_real_t t160 = t159 * t20;
-    const iiwa14_real_t t161 = t98 * t119 - t100 * t68;
+    const iiwa14_real_t t161 = t98 * t119 - t100 * t68; /* link j5: column of the mass matrix */
     const iiwa14_real_t t162 = t98 * t42 - t100 * t118 + IIWA14_C(0.42) * t161;
     const iiwa14_real_t t163 = t150 * t162 - t146 * t85 - t155 * t28 + t159 * t21;
     const iiwa14_real_t t164 = t163 * t53;
     const iiwa14_real_t t165 = t152 - t155 * t156 - t159 * t160 - t163 * t164;
-    const iiwa14_real_t t166 = t98 * t125;
+    const iiwa14_real_t t166 = t98 * t125; /* link j4: column of the mass matrix */
     const iiwa14_real_t t167 = t98 * t61 - t100 * t124 + IIWA14_C(0.42) * t166;
     const iiwa14_real_t t168 = t150 * t167 - t146 * t91 - t155 * t55 + t159 * t63;
     const iiwa14_real_t t169 = t168 + t163 * t54;
@@ -381,6 +392,7 @@ int iiwa14_forward_dynamics_derivatives(
     const iiwa14_real_t t171 = t150 * t148 + t146 * t74 + t155 * t79 + t159 * t84;
     const iiwa14_real_t t172 = t171 + t163 * t87 + t169 * t94;
     const iiwa14_real_t t173 = t172 * t130;
+    /* link j3: inertia of it and all beyond */
     const iiwa14_real_t t174 = t98 * t134 - t133 - parameters[XZ2];
     const iiwa14_real_t t175 = parameters[YZ2] + t107;
     const iiwa14_real_t t176 = t150 * t174 - t146 * t175 - t155 * t138 - t159 * t139;
@@ -403,265 +415,289 @@ int iiwa14_forward_dynamics_derivatives(
         iiwa14_zero(ddq_by_input, 49);
         return IIWA14_STATUS_PIVOT;
     }
-    const iiwa14_real_t t182 = t150 * dq[0];
-    const iiwa14_real_t t183 = t100 * t182 - t98 * dq[1];
+    const iiwa14_real_t t182 = t150 * dq[0]; /* link j2: motion */
+    const iiwa14_real_t t183 = t100 * t182 - t98 * dq[1]; /* link j3: motion */
     const iiwa14_real_t t184 = t98 * t182 + t100 * dq[1];
     const iiwa14_real_t t185 = t183 * t184;
-    const iiwa14_real_t t186 = dq[1] * t182;
-    const iiwa14_real_t t187 = t186 - t185;
-    const iiwa14_real_t t188 = t146 * dq[0];
+    const iiwa14_real_t t186 = dq[1] * t182; /* link j2: motion */
+    const iiwa14_real_t t187 = t186 - t185; /* link j4: motion */
+    const iiwa14_real_t t188 = t146 * dq[0]; /* link j2: motion */
     const iiwa14_real_t t189 = t182 * t188;
     const iiwa14_real_t t190 = dq[1] * t188;
     const iiwa14_real_t t191 = IIWA14_C(-2.0) * t190;
-    const iiwa14_real_t t192 = t100 * t191 - t98 * t189;
+    const iiwa14_real_t t192 = t100 * t191 - t98 * t189; /* link j3: motion */
     const iiwa14_real_t t193 = dq[2] + t188;
     const iiwa14_real_t t194 = t184 * t193;
     const iiwa14_real_t t195 = t192 + t194;
-    const iiwa14_real_t t196 = t194 + t195;
+    const iiwa14_real_t t196 = t194 + t195; /* link j4: motion */
     const iiwa14_real_t t197 = t67 * t187 + t71 * t196;
     const iiwa14_real_t t198 = t71 * t193 - t67 * t183;
     const iiwa14_real_t t199 = t184 - dq[3];
     const iiwa14_real_t t200 = t198 * t199;
     const iiwa14_real_t t201 = t197 - t200;
-    const iiwa14_real_t t202 = t34 * t198 + t32 * t199;
+    const iiwa14_real_t t202 = t34 * t198 + t32 * t199; /* link j5: motion */
     const iiwa14_real_t t203 = t34 * t199 - t32 * t198;
     const iiwa14_real_t t204 = t202 * t203;
-    const iiwa14_real_t t205 = t201 + t204;
-    const iiwa14_real_t t206 = t100 * t189 + t98 * t191;
+    const iiwa14_real_t t205 = t201 + t204; /* link j6: motion */
+    const iiwa14_real_t t206 = t100 * t189 + t98 * t191; /* link j3: motion */
     const iiwa14_real_t t207 = t183 * t193;
     const iiwa14_real_t t208 = t207 - t206;
-    const iiwa14_real_t t209 = t71 * t183 + t67 * t193;
+    const iiwa14_real_t t209 = t71 * t183 + t67 * t193; /* link j4: motion */
     const iiwa14_real_t t210 = t198 * t209;
-    const iiwa14_real_t t211 = t208 + t210;
-    const iiwa14_real_t t212 = t67 * t196 - t71 * t187;
+    const iiwa14_real_t t211 = t208 + t210; /* link j5: motion */
+    const iiwa14_real_t t212 = t67 * t196 - t71 * t187; /* link j4: motion */
     const iiwa14_real_t t213 = t209 * t199;
     const iiwa14_real_t t214 = t212 - t213;
-    const iiwa14_real_t t215 = t214 - t213;
+    const iiwa14_real_t t215 = t214 - t213; /* link j5: motion */
     const iiwa14_real_t t216 = t32 * t211 + t34 * t215;
     const iiwa14_real_t t217 = dq[4] + t209;
     const iiwa14_real_t t218 = t203 * t217;
     const iiwa14_real_t t219 = t216 + t218;
-    const iiwa14_real_t t220 = t218 + t219;
+    const iiwa14_real_t t220 = t218 + t219; /* link j6: motion */
     const iiwa14_real_t t221 = t13 * t205 + t15 * t220;
     const iiwa14_real_t t222 = t13 * t202 + t15 * t217;
     const iiwa14_real_t t223 = dq[5] + t203;
     const iiwa14_real_t t224 = t222 * t223;
     const iiwa14_real_t t225 = t221 - t224;
-    const iiwa14_real_t t226 = t225 - t224;
-    const iiwa14_real_t t227 = t32 * t215 - t34 * t211;
+    const iiwa14_real_t t226 = t225 - t224; /* link j7: motion */
+    const iiwa14_real_t t227 = t32 * t215 - t34 * t211; /* link j5: motion */
     const iiwa14_real_t t228 = t202 * t217;
     const iiwa14_real_t t229 = t227 + t228;
-    const iiwa14_real_t t230 = t15 * t202 - t13 * t217;
+    const iiwa14_real_t t230 = t15 * t202 - t13 * t217; /* link j6: motion */
     const iiwa14_real_t t231 = t230 * t222;
-    const iiwa14_real_t t232 = t231 - t229;
+    const iiwa14_real_t t232 = t231 - t229; /* link j7: motion */
     const iiwa14_real_t t233 = t1 * t232 + t2 * t226;
     const iiwa14_real_t t234 = t2 * t223 - t1 * t230;
     const iiwa14_real_t t235 = dq[6] + t222;
     const iiwa14_real_t t236 = t234 * t235;
     const iiwa14_real_t t237 = t233 + t236;
-    const iiwa14_real_t t238 = parameters[ZZ7] * t236;
-    const iiwa14_real_t t239 = t1 * t226 - t2 * t232;
+    const iiwa14_real_t t238 = parameters[ZZ7] * t236; /* link j7: force and moment */
+    const iiwa14_real_t t239 = t1 * t226 - t2 * t232; /* link j7: motion */
     const iiwa14_real_t t240 = t2 * t230 + t1 * t223;
     const iiwa14_real_t t241 = t240 * t235;
-    const iiwa14_real_t t242 = t241 + (t239 + t241);
-    const iiwa14_real_t t243 = t13 * t220 - t15 * t205;
+    const iiwa14_real_t t242 = t241 + (t239 + t241); /* link j7: force and moment */
+    const iiwa14_real_t t243 = t13 * t220 - t15 * t205; /* link j6: motion */
     const iiwa14_real_t t244 = t230 * t223;
     const iiwa14_real_t t245 = t243 + t244;
-    const iiwa14_real_t t246 = t240 * t234;
-    const iiwa14_real_t t247 = t245 + t246;
+    const iiwa14_real_t t246 = t240 * t234; /* link j7: motion */
+    const iiwa14_real_t t247 = t245 + t246; /* link j7: force and moment */
     const iiwa14_real_t t248 = parameters[XY7] * t242 - (parameters[XX7R] * t237 + t238)
         - parameters[XZ7R] * t247;
-    const iiwa14_real_t t249 = t234 * t234;
+    const iiwa14_real_t t249 = t234 * t234; /* link j7: motion */
     const iiwa14_real_t t250 = t235 * t235;
-    const iiwa14_real_t t251 = parameters[YZ7R] * (t250 - t249);
-    const iiwa14_real_t t252 = IIWA14_C(-9.81) * t150;
-    const iiwa14_real_t t253 = t252 + IIWA14_C(-0.42) * t189;
+    const iiwa14_real_t t251 = parameters[YZ7R] * (t250 - t249); /* link j7: force and moment */
+    const iiwa14_real_t t252 = IIWA14_C(-9.81) * t150; /* link j2: motion */
+    const iiwa14_real_t t253 = t252 + IIWA14_C(-0.42) * t189; /* link j3: motion */
     const iiwa14_real_t t254 = IIWA14_C(0.84) * t190;
     const iiwa14_real_t t255 = t100 * t253 + t98 * t254;
-    const iiwa14_real_t t256 = t182 * t182;
+    const iiwa14_real_t t256 = t182 * t182; /* link j2: motion */
     const iiwa14_real_t t257 = dq[1] * dq[1];
     const iiwa14_real_t t258 = IIWA14_C(9.81) * t146;
-    const iiwa14_real_t t259 = t258 + IIWA14_C(-0.42) * (t257 + t256);
-    const iiwa14_real_t t260 = t71 * t259;
+    const iiwa14_real_t t259 = t258 + IIWA14_C(-0.42) * (t257 + t256); /* link j3: motion */
+    const iiwa14_real_t t260 = t71 * t259; /* link j4: motion */
     const iiwa14_real_t t261 = t67 * t255 + t260;
-    const iiwa14_real_t t262 = t261 + IIWA14_C(0.4) * t211;
-    const iiwa14_real_t t263 = t98 * t253 - t100 * t254;
-    const iiwa14_real_t t264 = t263 + IIWA14_C(0.4) * t215;
+    const iiwa14_real_t t262 = t261 + IIWA14_C(0.4) * t211; /* link j5: motion */
+    const iiwa14_real_t t263 = t98 * t253 - t100 * t254; /* link j3: motion */
+    const iiwa14_real_t t264 = t263 + IIWA14_C(0.4) * t215; /* link j5: motion */
     const iiwa14_real_t t265 = t34 * t262 - t32 * t264;
-    const iiwa14_real_t t266 = t198 * t198;
+    const iiwa14_real_t t266 = t198 * t198; /* link j4: motion */
     const iiwa14_real_t t267 = t199 * t199;
-    const iiwa14_real_t t268 = t266 + t267;
+    const iiwa14_real_t t268 = t266 + t267; /* link j5: motion */
     const iiwa14_real_t t269 = IIWA14_C(0.4) * t268;
-    const iiwa14_real_t t270 = t67 * t259;
+    const iiwa14_real_t t270 = t67 * t259; /* link j4: motion */
     const iiwa14_real_t t271 = t71 * t255 - t270;
-    const iiwa14_real_t t272 = t271 + t269;
-    const iiwa14_real_t t273 = t15 * t272 - t13 * t265;
-    const iiwa14_real_t t274 = t248 + t251 + parameters[MY7] * t273;
+    const iiwa14_real_t t272 = t271 + t269; /* link j5: motion */
+    const iiwa14_real_t t273 = t15 * t272 - t13 * t265; /* link j6: motion */
+    const iiwa14_real_t t274 = t248 + t251 + parameters[MY7] * t273; /* link j7: force and moment */
     const iiwa14_real_t t275 = t236 + t237;
     const iiwa14_real_t t276 = t241 * (parameters[XX7R] - parameters[ZZ7]);
     const iiwa14_real_t t277 = t246 - t245;
-    const iiwa14_real_t t278 = t240 * t240;
-    const iiwa14_real_t t279 = parameters[XZ7R] * (t278 - t250);
+    const iiwa14_real_t t278 = t240 * t240; /* link j7: motion */
+    const iiwa14_real_t t279 = parameters[XZ7R] * (t278 - t250); /* link j7: force and moment */
     const iiwa14_real_t t280 = parameters[YZ7R] * t277 - (t276 + parameters[XY7] * t275) + t279
         - parameters[MX7] * t273;
-    const iiwa14_real_t t281 = parameters[ZZ6R] * t224;
-    const iiwa14_real_t t282 = t244 + t245;
+    const iiwa14_real_t t281 = parameters[ZZ6R] * t224; /* link j6: force and moment */
+    const iiwa14_real_t t282 = t244 + t245; /* link j7: motion */
     const iiwa14_real_t t283 = t229 + t231;
+    /* link j6: force and moment */
     const iiwa14_real_t t284 = parameters[XX6R] * t225 - t281 - parameters[XY6] * t282
         - parameters[XZ6] * t283;
-    const iiwa14_real_t t285 = t222 * t222;
+    const iiwa14_real_t t285 = t222 * t222; /* link j6: motion */
     const iiwa14_real_t t286 = t223 * t223;
-    const iiwa14_real_t t287 = parameters[YZ6] * (t285 - t286);
-    const iiwa14_real_t t288 = t32 * t262 + t34 * t264;
+    const iiwa14_real_t t287 = parameters[YZ6] * (t285 - t286); /* link j6: force and moment */
+    const iiwa14_real_t t288 = t32 * t262 + t34 * t264; /* link j5: motion */
+    /* link j7: what it passes on */
     const iiwa14_real_t t289 = t284 + t287 - parameters[MY6R] * t288 - (t2 * t274 - t1 * t280);
-    const iiwa14_real_t t290 = parameters[XX7R] * t246;
+    const iiwa14_real_t t290 = parameters[XX7R] * t246; /* link j7: force and moment */
     const iiwa14_real_t t291 = t290 - parameters[ZZ7] * t245 + parameters[YZ7R] * t239
         - parameters[XZ7R] * t233;
     const iiwa14_real_t t292 = parameters[XY7] * (t249 - t278);
-    const iiwa14_real_t t293 = t15 * t265 + t13 * t272;
+    const iiwa14_real_t t293 = t15 * t265 + t13 * t272; /* link j6: motion */
+    /* link j7: force and moment */
     const iiwa14_real_t t294 = parameters[MX7] * (t1 * t293 + t2 * t288) + parameters[MY7] * (t2 * t293
         - t1 * t288);
     const iiwa14_real_t t295 = t291 + t292 + t294;
-    const iiwa14_real_t t296 = t244 * (parameters[ZZ6R] - parameters[XX6R]);
-    const iiwa14_real_t t297 = t230 * t230;
-    const iiwa14_real_t t298 = parameters[XZ6] * (t286 - t297);
+    const iiwa14_real_t t296 = t244 * (parameters[ZZ6R] - parameters[XX6R]); /* link j6: force and moment */
+    const iiwa14_real_t t297 = t230 * t230; /* link j6: motion */
+    const iiwa14_real_t t298 = parameters[XZ6] * (t286 - t297); /* link j6: force and moment */
     const iiwa14_real_t t299 = parameters[XY6] * t226 - t296 + parameters[YZ6] * t232 + t298
         + parameters[MX6] * t288;
-    const iiwa14_real_t t300 = t299 + t295;
-    const iiwa14_real_t t301 = parameters[ZZ5R] * t218;
-    const iiwa14_real_t t302 = t228 + t229;
+    const iiwa14_real_t t300 = t299 + t295; /* link j7: what it passes on */
+    const iiwa14_real_t t301 = parameters[ZZ5R] * t218; /* link j5: force and moment */
+    const iiwa14_real_t t302 = t228 + t229; /* link j6: motion */
     const iiwa14_real_t t303 = t201 - t204;
+    /* link j5: force and moment */
     const iiwa14_real_t t304 = parameters[XY5] * t302 - (parameters[XX5R] * t219 + t301)
         + parameters[XZ5] * t303;
-    const iiwa14_real_t t305 = t203 * t203;
+    const iiwa14_real_t t305 = t203 * t203; /* link j5: motion */
     const iiwa14_real_t t306 = t217 * t217;
-    const iiwa14_real_t t307 = parameters[YZ5] * (t306 - t305);
+    const iiwa14_real_t t307 = parameters[YZ5] * (t306 - t305); /* link j5: force and moment */
+    /* link j6: what it passes on */
     const iiwa14_real_t t308 = t304 + t307 + parameters[MY5R] * t272 + (t13 * t300 - t15 * t289);
-    const iiwa14_real_t t309 = parameters[XX6R] * t231;
+    const iiwa14_real_t t309 = parameters[XX6R] * t231; /* link j6: force and moment */
     const iiwa14_real_t t310 = parameters[ZZ6R] * t229 - t309 + parameters[YZ6] * t243
         - parameters[XZ6] * t221;
     const iiwa14_real_t t311 = parameters[XY6] * (t285 - t297);
+    /* link j7: what it passes on */
     const iiwa14_real_t t312 = t310 + t311 - (parameters[MX6] * t273 - parameters[MY6R] * t293) + (t1 * t274
         + t2 * t280);
-    const iiwa14_real_t t313 = t228 * (parameters[XX5R] - parameters[ZZ5R]);
-    const iiwa14_real_t t314 = t202 * t202;
-    const iiwa14_real_t t315 = parameters[XZ5] * (t314 - t306);
+    const iiwa14_real_t t313 = t228 * (parameters[XX5R] - parameters[ZZ5R]); /* link j5: force and moment */
+    const iiwa14_real_t t314 = t202 * t202; /* link j5: motion */
+    const iiwa14_real_t t315 = parameters[XZ5] * (t314 - t306); /* link j5: force and moment */
     const iiwa14_real_t t316 = parameters[YZ5] * t205 - (t313 + parameters[XY5] * t220) + t315
         - parameters[MX5] * t272;
-    const iiwa14_real_t t317 = t316 + t312;
-    const iiwa14_real_t t318 = parameters[MX7] * (t249 + t250);
+    const iiwa14_real_t t317 = t316 + t312; /* link j6: what it passes on */
+    const iiwa14_real_t t318 = parameters[MX7] * (t249 + t250); /* link j7: force and moment */
     const iiwa14_real_t t319 = t318 - parameters[MY7] * t277;
     const iiwa14_real_t t320 = parameters[MY7] * (t278 + t250);
     const iiwa14_real_t t321 = parameters[MX7] * t247 - t320;
-    const iiwa14_real_t t322 = parameters[MX6] * (t285 + t286);
+    const iiwa14_real_t t322 = parameters[MX6] * (t285 + t286); /* link j6: force and moment */
+    /* link j7: what it passes on */
     const iiwa14_real_t t323 = t322 + parameters[MY6R] * t232 + (t2 * t319 + t1 * t321);
-    const iiwa14_real_t t324 = parameters[MY6R] * (t297 + t286);
+    const iiwa14_real_t t324 = parameters[MY6R] * (t297 + t286); /* link j6: force and moment */
+    /* link j7: what it passes on */
     const iiwa14_real_t t325 = parameters[MX6] * t283 + t324 + (parameters[MX7] * t242
         + parameters[MY7] * t275);
-    const iiwa14_real_t t326 = parameters[MX5] * (t305 + t306);
+    const iiwa14_real_t t326 = parameters[MX5] * (t305 + t306); /* link j5: force and moment */
+    /* link j6: what it passes on */
     const iiwa14_real_t t327 = t326 - parameters[MY5R] * t205 + (t15 * t323 - t13 * t325);
+    /* link j7: what it passes on */
     const iiwa14_real_t t328 = parameters[MX6] * t282 + parameters[MY6R] * t226 + (t2 * t321 - t1 * t319);
-    const iiwa14_real_t t329 = parameters[MY5R] * (t314 + t306);
-    const iiwa14_real_t t330 = t328 - (parameters[MX5] * t303 + t329);
-    const iiwa14_real_t t331 = t34 * t330 - t32 * t327;
-    const iiwa14_real_t t332 = parameters[ZZ4R] * t213;
-    const iiwa14_real_t t333 = t201 - t200;
+    const iiwa14_real_t t329 = parameters[MY5R] * (t314 + t306); /* link j5: force and moment */
+    const iiwa14_real_t t330 = t328 - (parameters[MX5] * t303 + t329); /* link j6: what it passes on */
+    const iiwa14_real_t t331 = t34 * t330 - t32 * t327; /* link j5: what it passes on */
+    const iiwa14_real_t t332 = parameters[ZZ4R] * t213; /* link j4: force and moment */
+    const iiwa14_real_t t333 = t201 - t200; /* link j5: motion */
     const iiwa14_real_t t334 = t210 - t208;
+    /* link j4: force and moment */
     const iiwa14_real_t t335 = t332 - parameters[XX4R] * t214 + parameters[XY4] * t333
         - parameters[XZ4] * t334;
-    const iiwa14_real_t t336 = t209 * t209;
-    const iiwa14_real_t t337 = parameters[YZ4] * (t267 - t336);
+    const iiwa14_real_t t336 = t209 * t209; /* link j4: motion */
+    const iiwa14_real_t t337 = parameters[YZ4] * (t267 - t336); /* link j4: force and moment */
+    /* link j5: what it passes on */
     const iiwa14_real_t t338 = t335 + t337 - parameters[MY4R] * t263 + (t34 * t308 - t32 * t317
         + IIWA14_C(0.4) * t331);
-    const iiwa14_real_t t339 = parameters[XX5R] * t204;
+    const iiwa14_real_t t339 = parameters[XX5R] * t204; /* link j5: force and moment */
     const iiwa14_real_t t340 = parameters[ZZ5R] * t201 + t339 + parameters[YZ5] * t227
         - parameters[XZ5] * t216;
     const iiwa14_real_t t341 = parameters[XY5] * (t305 - t314);
+    /* link j6: what it passes on */
     const iiwa14_real_t t342 = t340 + t341 + (parameters[MX5] * t288 + parameters[MY5R] * t265) + (t13 * t289
         + t15 * t300);
-    const iiwa14_real_t t343 = t200 * (parameters[XX4R] - parameters[ZZ4R]);
+    const iiwa14_real_t t343 = t200 * (parameters[XX4R] - parameters[ZZ4R]); /* link j4: force and moment */
     const iiwa14_real_t t344 = parameters[XZ4] * (t266 - t267);
     const iiwa14_real_t t345 = t343 - parameters[XY4] * t215 + parameters[YZ4] * t211 + t344
         + parameters[MX4] * t263;
-    const iiwa14_real_t t346 = t345 + t342;
-    const iiwa14_real_t t347 = parameters[ZZ3R] * t194;
-    const iiwa14_real_t t348 = t186 + t185;
+    const iiwa14_real_t t346 = t345 + t342; /* link j5: what it passes on */
+    const iiwa14_real_t t347 = parameters[ZZ3R] * t194; /* link j3: force and moment */
+    const iiwa14_real_t t348 = t186 + t185; /* link j4: motion */
+    /* link j3: force and moment */
     const iiwa14_real_t t349 = parameters[XZ3] * t348 - (parameters[XX3R] * t195 + t347
         + parameters[XY3] * (t207 + t208));
-    const iiwa14_real_t t350 = t184 * t184;
+    const iiwa14_real_t t350 = t184 * t184; /* link j3: motion */
     const iiwa14_real_t t351 = t193 * t193;
-    const iiwa14_real_t t352 = parameters[YZ3] * (t350 - t351);
+    const iiwa14_real_t t352 = parameters[YZ3] * (t350 - t351); /* link j3: force and moment */
     const iiwa14_real_t t353 = parameters[MY3R] * t259;
+    /* link j4: what it passes on */
     const iiwa14_real_t t354 = t349 - t352 - t353 + (t67 * t338 - t71 * t346);
-    const iiwa14_real_t t355 = t34 * t327 + t32 * t330;
-    const iiwa14_real_t t356 = parameters[XX4R] * t210;
+    const iiwa14_real_t t355 = t34 * t327 + t32 * t330; /* link j5: what it passes on */
+    const iiwa14_real_t t356 = parameters[XX4R] * t210; /* link j4: force and moment */
     const iiwa14_real_t t357 = parameters[XZ4] * t212 - (parameters[ZZ4R] * t208 + t356
         + parameters[YZ4] * t197);
     const iiwa14_real_t t358 = parameters[XY4] * (t266 - t336);
+    /* link j5: what it passes on */
     const iiwa14_real_t t359 = t357 + t358 - (parameters[MX4] * t271 + parameters[MY4R] * t261) + (t32 * t308
         + t34 * t317 + IIWA14_C(0.4) * t355);
-    const iiwa14_real_t t360 = t207 * (parameters[XX3R] - parameters[ZZ3R]);
-    const iiwa14_real_t t361 = t183 * t183;
-    const iiwa14_real_t t362 = parameters[XZ3] * (t361 - t351);
+    const iiwa14_real_t t360 = t207 * (parameters[XX3R] - parameters[ZZ3R]); /* link j3: force and moment */
+    const iiwa14_real_t t361 = t183 * t183; /* link j3: motion */
+    const iiwa14_real_t t362 = parameters[XZ3] * (t361 - t351); /* link j3: force and moment */
     const iiwa14_real_t t363 = parameters[MX3] * t259;
     const iiwa14_real_t t364 = t360 - parameters[XY3] * t196 + parameters[YZ3] * t187 + t362 + t363;
-    const iiwa14_real_t t365 = t364 + t359;
-    const iiwa14_real_t t366 = parameters[MX4] * (t336 + t267);
+    const iiwa14_real_t t365 = t364 + t359; /* link j4: what it passes on */
+    const iiwa14_real_t t366 = parameters[MX4] * (t336 + t267); /* link j4: force and moment */
+    /* link j6: what it passes on */
     const iiwa14_real_t t367 = parameters[MX5] * t302 + parameters[MY5R] * t220 + (t13 * t323 + t15 * t325);
-    const iiwa14_real_t t368 = parameters[MY4R] * t268;
+    const iiwa14_real_t t368 = parameters[MY4R] * t268; /* link j4: force and moment */
+    /* link j4: what it passes on */
     const iiwa14_real_t t369 = t67 * (t366 - parameters[MY4R] * t211 + t355) + t71 * (parameters[MX4] * t334
         - t368 + t367);
-    const iiwa14_real_t t370 = parameters[MX3] * (t350 + t351);
-    const iiwa14_real_t t371 = t370 - parameters[MY3R] * t187 + t369;
-    const iiwa14_real_t t372 = parameters[MY3R] * (t361 + t351);
+    const iiwa14_real_t t370 = parameters[MX3] * (t350 + t351); /* link j3: force and moment */
+    const iiwa14_real_t t371 = t370 - parameters[MY3R] * t187 + t369; /* link j4: what it passes on */
+    const iiwa14_real_t t372 = parameters[MY3R] * (t361 + t351); /* link j3: force and moment */
+    /* link j4: what it passes on */
     const iiwa14_real_t t373 = parameters[MX3] * t348 + t372 - (t331 - (parameters[MX4] * t333
         + parameters[MY4R] * t215));
+    /* link j3: what it passes on */
     const iiwa14_real_t t374 = t98 * t365 - t100 * t354 + IIWA14_C(0.42) * (t98 * t371 + t100 * t373);
-    const iiwa14_real_t t375 = parameters[ZZ2R] * t190;
+    const iiwa14_real_t t375 = parameters[ZZ2R] * t190; /* link j2: force and moment */
     const iiwa14_real_t t376 = parameters[XY2] * (IIWA14_C(2.0) * t186) - (parameters[XX2R] * t190 + t375)
         + parameters[XZ2] * t189;
-    const iiwa14_real_t t377 = t188 * t188;
-    const iiwa14_real_t t378 = parameters[YZ2] * (t377 - t257);
-    const iiwa14_real_t t379 = parameters[XY3] * (t361 - t350);
+    const iiwa14_real_t t377 = t188 * t188; /* link j2: motion */
+    const iiwa14_real_t t378 = parameters[YZ2] * (t377 - t257); /* link j2: force and moment */
+    const iiwa14_real_t t379 = parameters[XY3] * (t361 - t350); /* link j3: force and moment */
     const iiwa14_real_t t380 = parameters[XX3R] * t185;
     const iiwa14_real_t t381 = parameters[ZZ3R] * t186 - t380 + parameters[YZ3] * t206
         - parameters[XZ3] * t192;
+    /* link j4: what it passes on */
     const iiwa14_real_t t382 = t381 - t379 + (parameters[MX3] * t263 + parameters[MY3R] * t255) + (t71 * t338
         + t67 * t346);
-    const iiwa14_real_t t383 = t186 * (parameters[XX2R] - parameters[ZZ2R]);
+    const iiwa14_real_t t383 = t186 * (parameters[XX2R] - parameters[ZZ2R]); /* link j2: force and moment */
     const iiwa14_real_t t384 = parameters[XZ2] * (t257 - t256);
+    /* link j3: what it passes on */
     const iiwa14_real_t t385 = parameters[XY2] * t191 - t383 - parameters[YZ2] * t189 + t384 + t382;
-    const iiwa14_real_t t386 = iiwa14_sign(dq[0]);
+    const iiwa14_real_t t386 = iiwa14_sign(dq[0]); /* joint j1: coulomb_friction */
     const iiwa14_real_t t387 = IIWA14_C(160.0) * (parameters[FV1] * (IIWA14_C(-160.0) * dq[0])
         - parameters[FC1] * t386) + (t150 * (t376 + t378 + t374) + t146 * t385);
-    const iiwa14_real_t t388 = iiwa14_sign(dq[6]);
+    const iiwa14_real_t t388 = iiwa14_sign(dq[6]); /* joint j7: coulomb_friction */
     const iiwa14_real_t t389 = IIWA14_C(160.0) * (parameters[FV7] * (IIWA14_C(160.0) * dq[6])
         + parameters[FC7] * t388) - t295;
     const iiwa14_real_t t390 = IIWA14_C(8.0) * input[6] - t389;
-    const iiwa14_real_t t391 = iiwa14_sign(dq[5]);
+    const iiwa14_real_t t391 = iiwa14_sign(dq[5]); /* joint j6: coulomb_friction */
     const iiwa14_real_t t392 = IIWA14_C(160.0) * (parameters[FV6] * (IIWA14_C(160.0) * dq[5])
         + parameters[FC6] * t391) - t312;
     const iiwa14_real_t t393 = IIWA14_C(8.0) * input[5] - t392 - t390 * t5;
     const iiwa14_real_t t394 = IIWA14_C(16.0) * input[0] + t387 + t390 * t156 + t393 * t160;
-    const iiwa14_real_t t395 = iiwa14_sign(dq[4]);
+    const iiwa14_real_t t395 = iiwa14_sign(dq[4]); /* joint j5: coulomb_friction */
     const iiwa14_real_t t396 = IIWA14_C(1.0e2) * (parameters[FV5] * (IIWA14_C(1.0e2) * dq[4])
         + parameters[FC5] * t395) - t342;
     const iiwa14_real_t t397 = IIWA14_C(8.0) * input[4] - t396 - t390 * t28 + t393 * t21;
-    const iiwa14_real_t t398 = iiwa14_sign(dq[3]);
+    const iiwa14_real_t t398 = iiwa14_sign(dq[3]); /* joint j4: coulomb_friction */
     const iiwa14_real_t t399 = IIWA14_C(160.0) * (parameters[FV4] * (IIWA14_C(160.0) * dq[3])
         + parameters[FC4] * t398) + t359;
     const iiwa14_real_t t400 = IIWA14_C(16.0) * input[3] - t399 - t390 * t55 + t393 * t63;
     const iiwa14_real_t t401 = t400 + t397 * t54;
-    const iiwa14_real_t t402 = iiwa14_sign(dq[2]);
+    const iiwa14_real_t t402 = iiwa14_sign(dq[2]); /* joint j3: coulomb_friction */
     const iiwa14_real_t t403 = IIWA14_C(160.0) * (parameters[FV3] * (IIWA14_C(-160.0) * dq[2])
         - parameters[FC3] * t402) + t382;
     const iiwa14_real_t t404 = IIWA14_C(16.0) * input[2] + t403 - t390 * t79 - t393 * t84;
     const iiwa14_real_t t405 = t404 - t397 * t87 - t401 * t94;
     const iiwa14_real_t t406 = t394 + t397 * t164 + t401 * t170 - t405 * t173;
+    /* link j3: what it passes on */
     const iiwa14_real_t t407 = t98 * t354 + t100 * t365 + IIWA14_C(0.42) * (t100 * t371 - t98 * t373);
+    /* link j2: force and moment */
     const iiwa14_real_t t408 = parameters[XX2R] * t189 + parameters[XY2] * (t377 - t256)
         + (parameters[MX2] * t258 + parameters[MY2R] * t252);
-    const iiwa14_real_t t409 = iiwa14_sign(dq[1]);
+    const iiwa14_real_t t409 = iiwa14_sign(dq[1]); /* joint j2: coulomb_friction */
     const iiwa14_real_t t410 = IIWA14_C(160.0) * (parameters[FV2] * (IIWA14_C(-160.0) * dq[1])
         - parameters[FC2] * t409) + (t408 + t407);
     const iiwa14_real_t t411 = IIWA14_C(16.0) * input[1] + t410 + t390 * t138 + t393 * t139;
@@ -694,6 +730,7 @@ int iiwa14_forward_dynamics_derivatives(
     const iiwa14_real_t t431 = parameters[XX7R] - t430;
     const iiwa14_real_t t432 = parameters[XZ7R] * t240 - t235 * t431;
     const iiwa14_real_t t433 = parameters[YZ7R] * t234 + t235 * t430;
+    /* link j7: inertia, momentum beyond */
     const iiwa14_real_t t434 = t2 * (t427 + t429) + t1 * (t432 - t433);
     const iiwa14_real_t t435 = t2 * t434;
     const iiwa14_real_t t436 = parameters[XZ6] * t222;
@@ -711,135 +748,157 @@ int iiwa14_forward_dynamics_derivatives(
     const iiwa14_real_t t448 = parameters[YZ7R] * t235 + t234 * t447;
     const iiwa14_real_t t449 = parameters[XZ7R] * t235 + t240 * t447;
     const iiwa14_real_t t450 = parameters[YZ6] * t222 - t223 * t444 - (t2 * t448 + t1 * t449);
+    /* link j6: inertia, momentum beyond */
     const iiwa14_real_t t451 = t15 * (t438 - t441) + t13 * (t450 - t446);
     const iiwa14_real_t t452 = t15 * t451;
     const iiwa14_real_t t453 = parameters[XZ5] * t203;
     const iiwa14_real_t t454 = parameters[XY5] * t217;
     const iiwa14_real_t t455 = t453 - t454 + (t441 + t452);
-    const iiwa14_real_t t456 = t436 + t440 + (t427 - t435);
+    const iiwa14_real_t t456 = t436 + t440 + (t427 - t435); /* link j7: inertia, momentum beyond */
     const iiwa14_real_t t457 = parameters[YZ5] * t202;
-    const iiwa14_real_t t458 = t454 - t457 + t456;
-    const iiwa14_real_t t459 = t1 * t434;
+    const iiwa14_real_t t458 = t454 - t457 + t456; /* link j6: inertia, momentum beyond */
+    const iiwa14_real_t t459 = t1 * t434; /* link j7: inertia, momentum beyond */
     const iiwa14_real_t t460 = parameters[ZZ6R] - t444;
     const iiwa14_real_t t461 = t433 + t459 - (parameters[YZ6] * t223 + t222 * t460);
     const iiwa14_real_t t462 = parameters[XZ6] * t223 - t230 * t460 + (t1 * t442 + t2 * t443);
     const iiwa14_real_t t463 = IIWA14_C(-0.5) * (parameters[XX5R] + parameters[ZZ5R]);
+    /* link j6: inertia, momentum beyond */
     const iiwa14_real_t t464 = parameters[YZ5] * t203 - t217 * t463 + (t15 * t461 - t13 * t462);
+    /* link j7: inertia, momentum beyond */
     const iiwa14_real_t t465 = parameters[XY6] * t230 - t222 * t445 + (t459 - t432);
     const iiwa14_real_t t466 = parameters[XY6] * t222 - t230 * t444 + (t1 * t448 - t2 * t449);
     const iiwa14_real_t t467 = parameters[XX5R] + t463;
+    /* link j6: inertia, momentum beyond */
     const iiwa14_real_t t468 = t217 * t467 - parameters[XZ5] * t202 + (t15 * t465 - t13 * t466);
+    /* link j5: inertia, momentum beyond */
     const iiwa14_real_t t469 = t34 * (t458 - t455) + t32 * (t464 + t468);
     const iiwa14_real_t t470 = t34 * t469;
-    const iiwa14_real_t t471 = IIWA14_C(0.4) * t199;
-    const iiwa14_real_t t472 = t68 * t471;
+    const iiwa14_real_t t471 = IIWA14_C(0.4) * t199; /* link j5: velocity of its origin */
+    const iiwa14_real_t t472 = t68 * t471; /* link j5: inertia, momentum beyond */
     const iiwa14_real_t t473 = parameters[MY7] * t240 - parameters[MX7] * t234;
-    const iiwa14_real_t t474 = t473 - parameters[MX6] * t223;
+    const iiwa14_real_t t474 = t473 - parameters[MX6] * t223; /* link j7: inertia, momentum beyond */
     const iiwa14_real_t t475 = parameters[MY7] * t235;
     const iiwa14_real_t t476 = parameters[MX7] * t235;
     const iiwa14_real_t t477 = parameters[MY6R] * t223 + (t2 * t475 + t1 * t476);
+    /* link j6: inertia, momentum beyond */
     const iiwa14_real_t t478 = parameters[MY5R] * t202 - parameters[MX5] * t203 + (t13 * t477 + t15 * t474);
-    const iiwa14_real_t t479 = IIWA14_C(0.4) * t478;
-    const iiwa14_real_t t480 = IIWA14_C(-0.4) * t198;
-    const iiwa14_real_t t481 = t41 * t480;
+    const iiwa14_real_t t479 = IIWA14_C(0.4) * t478; /* link j5: inertia, momentum beyond */
+    const iiwa14_real_t t480 = IIWA14_C(-0.4) * t198; /* link j5: velocity of its origin */
+    const iiwa14_real_t t481 = t41 * t480; /* link j5: inertia, momentum beyond */
     const iiwa14_real_t t482 = t479 + (t472 + t481);
     const iiwa14_real_t t483 = parameters[XZ4] * t209;
     const iiwa14_real_t t484 = parameters[XY4] * t199;
     const iiwa14_real_t t485 = t483 + t484 + (t482 + (t458 - t470 - t472));
-    const iiwa14_real_t t486 = t453 - t457 + (t452 - t438);
+    const iiwa14_real_t t486 = t453 - t457 + (t452 - t438); /* link j6: inertia, momentum beyond */
     const iiwa14_real_t t487 = parameters[YZ4] * t198;
-    const iiwa14_real_t t488 = t484 + t487 + (t486 + t479 - t482);
-    const iiwa14_real_t t489 = t13 * t451;
+    const iiwa14_real_t t488 = t484 + t487 + (t486 + t479 - t482); /* link j5: inertia, momentum beyond */
+    const iiwa14_real_t t489 = t13 * t451; /* link j6: inertia, momentum beyond */
     const iiwa14_real_t t490 = t203 * t467 - parameters[XY5] * t202 + (t446 + t489);
     const iiwa14_real_t t491 = parameters[XY5] * t203 - t202 * t463 + (t13 * t461 + t15 * t462);
     const iiwa14_real_t t492 = IIWA14_C(0.5) * (parameters[XX4R] + parameters[ZZ4R]);
     const iiwa14_real_t t493 = t492 - parameters[XX4R];
+    /* link j5: inertia, momentum beyond */
     const iiwa14_real_t t494 = parameters[XZ4] * t198 - t199 * t493 + (t34 * t490 - t32 * t491);
     const iiwa14_real_t t495 = parameters[ZZ5R] + t463;
+    /* link j6: inertia, momentum beyond */
     const iiwa14_real_t t496 = t203 * t495 - parameters[YZ5] * t217 + (t450 - t489);
     const iiwa14_real_t t497 = t202 * t495 - parameters[XZ5] * t217 + (t13 * t465 + t15 * t466);
     const iiwa14_real_t t498 = parameters[MY5R] * t217 + (t15 * t477 - t13 * t474);
+    /* link j7: inertia, momentum beyond */
     const iiwa14_real_t t499 = parameters[MY6R] * t230 + parameters[MX6] * t222 + (t2 * t476 - t1 * t475);
-    const iiwa14_real_t t500 = parameters[MX5] * t217 + t499;
-    const iiwa14_real_t t501 = t34 * t498 + t32 * t500;
+    const iiwa14_real_t t500 = parameters[MX5] * t217 + t499; /* link j6: inertia, momentum beyond */
+    const iiwa14_real_t t501 = t34 * t498 + t32 * t500; /* link j5: inertia, momentum beyond */
     const iiwa14_real_t t502 = t34 * t496 + t32 * t497 + (IIWA14_C(0.4) * t501 + t48 * t471);
     const iiwa14_real_t t503 = parameters[YZ4] * t209 - t199 * t492 + t502;
+    /* link j4: inertia, momentum beyond */
     const iiwa14_real_t t504 = t67 * (t485 + t488) + t71 * (t494 - t503);
     const iiwa14_real_t t505 = t67 * t504;
     const iiwa14_real_t t506 = parameters[XZ3] * t184;
     const iiwa14_real_t t507 = parameters[XY3] * t193;
     const iiwa14_real_t t508 = t506 - t507 + (t505 - t488);
+    /* link j5: inertia, momentum beyond */
     const iiwa14_real_t t509 = t487 - t483 + (t482 + (t455 + t470 - t481));
     const iiwa14_real_t t510 = parameters[YZ3] * t183;
-    const iiwa14_real_t t511 = t507 + t510 + t509;
-    const iiwa14_real_t t512 = t32 * t469;
+    const iiwa14_real_t t511 = t507 + t510 + t509; /* link j4: inertia, momentum beyond */
+    const iiwa14_real_t t512 = t32 * t469; /* link j5: inertia, momentum beyond */
     const iiwa14_real_t t513 = parameters[ZZ4R] - t492;
     const iiwa14_real_t t514 = parameters[YZ4] * t199 + t209 * t513 + (t512 - t464 + t41 * t471);
     const iiwa14_real_t t515 = t32 * t490 + t34 * t491 - (parameters[XZ4] * t199 + t198 * t513);
     const iiwa14_real_t t516 = IIWA14_C(0.5) * (parameters[XX3R] + parameters[ZZ3R]);
+    /* link j4: inertia, momentum beyond */
     const iiwa14_real_t t517 = parameters[YZ3] * t184 + t193 * t516 + (t71 * t515 - t67 * t514);
+    /* link j5: inertia, momentum beyond */
     const iiwa14_real_t t518 = t468 - t512 - t68 * t480 - (parameters[XY4] * t198 + t209 * t493);
     const iiwa14_real_t t519 = t34 * t500 - t32 * t498;
     const iiwa14_real_t t520 = t34 * t497 - t32 * t496 - (IIWA14_C(-0.4) * t519 + t48 * t480);
     const iiwa14_real_t t521 = parameters[XY4] * t209 + t198 * t492 - t520;
     const iiwa14_real_t t522 = parameters[XX3R] - t516;
+    /* link j4: inertia, momentum beyond */
     const iiwa14_real_t t523 = parameters[XZ3] * t183 + t193 * t522 + (t67 * t518 - t71 * t521);
+    /* link j3: inertia, momentum beyond */
     const iiwa14_real_t t524 = t100 * (t511 - t508) + t98 * (t517 + t523);
     const iiwa14_real_t t525 = t100 * t524;
-    const iiwa14_real_t t526 = IIWA14_C(-0.42) * dq[1];
-    const iiwa14_real_t t527 = t147 * t526;
-    const iiwa14_real_t t528 = t501 - parameters[MY4R] * t199;
+    const iiwa14_real_t t526 = IIWA14_C(-0.42) * dq[1]; /* link j3: velocity of its origin */
+    const iiwa14_real_t t527 = t147 * t526; /* link j3: inertia, momentum beyond */
+    const iiwa14_real_t t528 = t501 - parameters[MY4R] * t199; /* link j5: inertia, momentum beyond */
     const iiwa14_real_t t529 = t478 - parameters[MX4] * t199;
+    /* link j4: inertia, momentum beyond */
     const iiwa14_real_t t530 = t67 * t529 - t71 * t528 - (parameters[MY3R] * t183 + parameters[MX3] * t184);
-    const iiwa14_real_t t531 = IIWA14_C(-0.42) * t530;
-    const iiwa14_real_t t532 = IIWA14_C(-0.42) * t182;
-    const iiwa14_real_t t533 = t106 * t532;
+    const iiwa14_real_t t531 = IIWA14_C(-0.42) * t530; /* link j3: inertia, momentum beyond */
+    const iiwa14_real_t t532 = IIWA14_C(-0.42) * t182; /* link j3: velocity of its origin */
+    const iiwa14_real_t t533 = t106 * t532; /* link j3: inertia, momentum beyond */
     const iiwa14_real_t t534 = t531 + (t527 + t533);
     const iiwa14_real_t t535 = parameters[XZ2] * t188;
     const iiwa14_real_t t536 = parameters[XY2] * dq[1];
     const iiwa14_real_t t537 = t535 + t536 + (t534 + (t525 - t511 - t527));
-    const iiwa14_real_t t538 = t506 + t510 + (t505 - t485);
+    const iiwa14_real_t t538 = t506 + t510 + (t505 - t485); /* link j4: inertia, momentum beyond */
     const iiwa14_real_t t539 = parameters[YZ2] * t182;
-    const iiwa14_real_t t540 = t534 + (t538 - t531) - (t536 + t539);
-    const iiwa14_real_t t541 = t71 * t504;
+    const iiwa14_real_t t540 = t534 + (t538 - t531) - (t536 + t539); /* link j3: inertia, momentum beyond */
+    const iiwa14_real_t t541 = t71 * t504; /* link j4: inertia, momentum beyond */
     const iiwa14_real_t t542 = parameters[XY3] * t183 + t184 * t522 - (t541 - t494);
     const iiwa14_real_t t543 = parameters[XY3] * t184 - t183 * t516 + (t71 * t514 + t67 * t515);
     const iiwa14_real_t t544 = IIWA14_C(0.5) * (parameters[XX2R] + parameters[ZZ2R]);
     const iiwa14_real_t t545 = t544 - parameters[XX2R];
+    /* link j3: inertia, momentum beyond */
     const iiwa14_real_t t546 = dq[1] * t545 - parameters[XZ2] * t182 + (t98 * t543 - t100 * t542);
     const iiwa14_real_t t547 = parameters[ZZ3R] - t516;
+    /* link j4: inertia, momentum beyond */
     const iiwa14_real_t t548 = t184 * t547 - parameters[YZ3] * t193 + (t503 + t541);
     const iiwa14_real_t t549 = parameters[XZ3] * t193 + t183 * t547 + (t71 * t518 + t67 * t521);
     const iiwa14_real_t t550 = parameters[MY3R] * t193 + (t67 * t528 + t71 * t529);
+    /* link j5: inertia, momentum beyond */
     const iiwa14_real_t t551 = parameters[MX4] * t209 - parameters[MY4R] * t198 + t519;
-    const iiwa14_real_t t552 = parameters[MX3] * t193 + t551;
+    const iiwa14_real_t t552 = parameters[MX3] * t193 + t551; /* link j4: inertia, momentum beyond */
+    /* link j3: inertia, momentum beyond */
     const iiwa14_real_t t553 = IIWA14_C(0.42) * (t100 * t550 + t98 * t552) + t125 * t526;
     const iiwa14_real_t t554 = parameters[YZ2] * t188 - dq[1] * t544 + (t100 * t548 - t98 * t549 + t553);
+    /* link j2: inertia, momentum beyond */
     const iiwa14_real_t t555 = t146 * (t146 * (t540 - t537) + t150 * (t554 + t546));
     const iiwa14_real_t t556 = IIWA14_C(-1.6e3) * parameters[FV1] + IIWA14_C(0.125) * (t537 + t555);
     const iiwa14_real_t t557 = t179 * t413;
     const iiwa14_real_t t558 = iiwa14_bounded(IIWA14_C(-16.0) * t557);
-    const iiwa14_real_t t559 = t98 * t524;
+    const iiwa14_real_t t559 = t98 * t524; /* link j3: inertia, momentum beyond */
     const iiwa14_real_t t560 = parameters[XY2] * t182 + t188 * t545 + (t559 - t523 - t147 * t532);
-    const iiwa14_real_t t561 = IIWA14_C(2.0) * t560;
+    const iiwa14_real_t t561 = IIWA14_C(2.0) * t560; /* link j2: derivatives */
+    /* link j3: inertia, momentum beyond */
     const iiwa14_real_t t562 = IIWA14_C(0.42) * (t98 * t550 - t100 * t552) + t125 * t532;
     const iiwa14_real_t t563 = parameters[XY2] * t188 + t182 * t544 - (t98 * t548 + t100 * t549 + t562);
-    const iiwa14_real_t t564 = IIWA14_C(2.0) * t563;
+    const iiwa14_real_t t564 = IIWA14_C(2.0) * t563; /* link j2: derivatives */
     const iiwa14_real_t t565 = IIWA14_C(0.0625) * (t150 * t561 - t146 * t564);
     const iiwa14_real_t t566 = t413 * (t173 + t131 * t179);
     const iiwa14_real_t t567 = iiwa14_bounded(IIWA14_C(-16.0) * t566);
-    const iiwa14_real_t t568 = IIWA14_C(-2.0) * t542;
+    const iiwa14_real_t t568 = IIWA14_C(-2.0) * t542; /* link j3: derivatives */
     const iiwa14_real_t t569 = IIWA14_C(-2.0) * t543;
     const iiwa14_real_t t570 = t98 * t569 - t100 * t568;
     const iiwa14_real_t t571 = IIWA14_C(2.0) * t538;
-    const iiwa14_real_t t572 = IIWA14_C(-0.84) * t182;
+    const iiwa14_real_t t572 = IIWA14_C(-0.84) * t182; /* link j7: derivatives */
     const iiwa14_real_t t573 = IIWA14_C(-0.84) * dq[1];
-    const iiwa14_real_t t574 = t571 + (t106 * t572 + t147 * t573);
+    const iiwa14_real_t t574 = t571 + (t106 * t572 + t147 * t573); /* link j3: derivatives */
     const iiwa14_real_t t575 = IIWA14_C(0.0625) * (t150 * t570 - t146 * t574);
     const iiwa14_real_t t576 = t142 - t94 * t131;
     const iiwa14_real_t t577 = t413 * (t170 + t94 * t173 - t179 * t576);
     const iiwa14_real_t t578 = iiwa14_bounded(IIWA14_C(16.0) * t577);
-    const iiwa14_real_t t579 = IIWA14_C(2.0) * t518;
+    const iiwa14_real_t t579 = IIWA14_C(2.0) * t518; /* link j4: derivatives */
     const iiwa14_real_t t580 = IIWA14_C(2.0) * t521;
     const iiwa14_real_t t581 = t67 * t579 - t71 * t580;
     const iiwa14_real_t t582 = IIWA14_C(2.0) * t509;
@@ -853,17 +912,17 @@ int iiwa14_forward_dynamics_derivatives(
     const iiwa14_real_t t590 = t164 + t54 * t170 + t173 * t588 - t179 * t589;
     const iiwa14_real_t t591 = t413 * t590;
     const iiwa14_real_t t592 = iiwa14_bounded(IIWA14_C(8.0) * t591);
-    const iiwa14_real_t t593 = IIWA14_C(2.0) * t490;
+    const iiwa14_real_t t593 = IIWA14_C(2.0) * t490; /* link j5: derivatives */
     const iiwa14_real_t t594 = IIWA14_C(2.0) * t491;
     const iiwa14_real_t t595 = t34 * t593 - t32 * t594;
     const iiwa14_real_t t596 = IIWA14_C(2.0) * t486;
-    const iiwa14_real_t t597 = IIWA14_C(0.8) * t198;
+    const iiwa14_real_t t597 = IIWA14_C(0.8) * t198; /* link j7: derivatives */
     const iiwa14_real_t t598 = IIWA14_C(0.8) * t199;
-    const iiwa14_real_t t599 = t596 + (t41 * t597 - t68 * t598);
+    const iiwa14_real_t t599 = t596 + (t41 * t597 - t68 * t598); /* link j5: derivatives */
     const iiwa14_real_t t600 = t67 * t595 - t71 * t599;
     const iiwa14_real_t t601 = t32 * t593 + t34 * t594;
-    const iiwa14_real_t t602 = t71 * t41;
-    const iiwa14_real_t t603 = t98 * t601 - t100 * t600 + t602 * t572;
+    const iiwa14_real_t t602 = t71 * t41; /* link j5: column of the mass matrix */
+    const iiwa14_real_t t603 = t98 * t601 - t100 * t600 + t602 * t572; /* link j5: derivatives */
     const iiwa14_real_t t604 = t71 * t595 + t67 * t599;
     const iiwa14_real_t t605 = t604 - (t161 * t573 - t120 * t572);
     const iiwa14_real_t t606 = IIWA14_C(0.125) * (t150 * t603 + t146 * t605);
@@ -873,7 +932,7 @@ int iiwa14_forward_dynamics_derivatives(
     const iiwa14_real_t t610 = t160 + t21 * t164 + t170 * t607 + t173 * t608;
     const iiwa14_real_t t611 = t413 * (t610 - t179 * t609);
     const iiwa14_real_t t612 = iiwa14_bounded(IIWA14_C(8.0) * t611);
-    const iiwa14_real_t t613 = IIWA14_C(-2.0) * t465;
+    const iiwa14_real_t t613 = IIWA14_C(-2.0) * t465; /* link j6: derivatives */
     const iiwa14_real_t t614 = IIWA14_C(2.0) * t466;
     const iiwa14_real_t t615 = t15 * t613 + t13 * t614;
     const iiwa14_real_t t616 = IIWA14_C(-2.0) * t456;
@@ -882,8 +941,8 @@ int iiwa14_forward_dynamics_derivatives(
     const iiwa14_real_t t619 = t618 + (t49 * t597 + t80 * t598);
     const iiwa14_real_t t620 = t67 * t617 - t71 * t619;
     const iiwa14_real_t t621 = t32 * t615 + t34 * t616 - t39 * t598;
-    const iiwa14_real_t t622 = t71 * t49 + t67 * t39;
-    const iiwa14_real_t t623 = t98 * t621 - t100 * t620 + t622 * t572;
+    const iiwa14_real_t t622 = t71 * t49 + t67 * t39; /* link j6: column of the mass matrix */
+    const iiwa14_real_t t623 = t98 * t621 - t100 * t620 + t622 * t572; /* link j6: derivatives */
     const iiwa14_real_t t624 = t71 * t617 + t67 * t619;
     const iiwa14_real_t t625 = t624 - (t157 * t573 - t115 * t572);
     const iiwa14_real_t t626 = IIWA14_C(0.125) * (t150 * t623 + t146 * t625);
@@ -895,7 +954,7 @@ int iiwa14_forward_dynamics_derivatives(
     const iiwa14_real_t t632 = t156 - t5 * t160 - t164 * t627 - t170 * t628;
     const iiwa14_real_t t633 = t413 * (t632 + t173 * t629 - t179 * t631);
     const iiwa14_real_t t634 = IIWA14_C(8.0) * t633;
-    const iiwa14_real_t t635 = IIWA14_C(2.0) * t442;
+    const iiwa14_real_t t635 = IIWA14_C(2.0) * t442; /* link j7: derivatives */
     const iiwa14_real_t t636 = IIWA14_C(2.0) * t443;
     const iiwa14_real_t t637 = t2 * t635 - t1 * t636;
     const iiwa14_real_t t638 = IIWA14_C(2.0) * t439;
@@ -906,8 +965,8 @@ int iiwa14_forward_dynamics_derivatives(
     const iiwa14_real_t t643 = t642 + (t45 * t597 + t76 * t598);
     const iiwa14_real_t t644 = t67 * t641 - t71 * t643;
     const iiwa14_real_t t645 = t32 * t639 + t34 * t640 + t109 * t598;
-    const iiwa14_real_t t646 = t67 * t109 - t71 * t45;
-    const iiwa14_real_t t647 = t98 * t645 - t100 * t644 - t646 * t572;
+    const iiwa14_real_t t646 = t67 * t109 - t71 * t45; /* link j7: column of the mass matrix */
+    const iiwa14_real_t t647 = t98 * t645 - t100 * t644 - t646 * t572; /* link j7: derivatives */
     const iiwa14_real_t t648 = t71 * t641 + t67 * t643;
     const iiwa14_real_t t649 = t648 - (t153 * t573 - t111 * t572);
     const iiwa14_real_t t650 = IIWA14_C(0.125) * (t150 * t647 + t146 * t649);
@@ -1121,11 +1180,11 @@ int iiwa14_forward_dynamics_derivatives(
     const iiwa14_real_t t825 = parameters[XY2] * (t186 + t729) - (t375 + parameters[XX2R] * t722)
         + parameters[XZ2] * (t189 + t415);
     const iiwa14_real_t t826 = t74 * t721;
-    const iiwa14_real_t t827 = t256 + t377;
-    const iiwa14_real_t t828 = IIWA14_C(-2.0) * t188;
+    const iiwa14_real_t t827 = t256 + t377; /* link j3: motion */
+    const iiwa14_real_t t828 = IIWA14_C(-2.0) * t188; /* link j2: derivatives */
     const iiwa14_real_t t829 = IIWA14_C(2.0) * t182;
     const iiwa14_real_t t830 = t826 - t149 * t728 - t175 * t827 - (t546 * t828 + t540 * t829);
-    const iiwa14_real_t t831 = t106 * t258;
+    const iiwa14_real_t t831 = t106 * t258; /* link j3: derivatives */
     const iiwa14_real_t t832 = t380 - parameters[ZZ3R] * t730 - parameters[YZ3] * t724
         - parameters[XZ3] * t732;
     const iiwa14_real_t t833 = t379 + t832 + (parameters[MX3] * t766 + parameters[MY3R] * t763) + (t71 * t806
@@ -1170,26 +1229,35 @@ int iiwa14_forward_dynamics_derivatives(
     const iiwa14_real_t t864 = t863 + t698 * t847 + t709 * t849 + t718 * t851;
     ddq_by_q[43] = t864;
     const iiwa14_real_t t865 = parameters[ZZ2R] - t544;
+    /* link j3: inertia, momentum beyond */
     const iiwa14_real_t t866 = t517 - t559 + t106 * t526 - (parameters[YZ2] * dq[1] + t188 * t865);
+    /* link j2: derivatives */
     const iiwa14_real_t t867 = t150 * (IIWA14_C(2.0) * t866 + (t149 * t829 - t145 * t828));
+    /* link j3: inertia, momentum beyond */
     const iiwa14_real_t t868 = parameters[XZ2] * dq[1] + t182 * t865 + (t98 * t542 + t100 * t543);
+    /* link j2: derivatives */
     const iiwa14_real_t t869 = t146 * (IIWA14_C(2.0) * t868 + (t149 * t828 + t74 * t829));
     const iiwa14_real_t t870 = IIWA14_C(0.0625) * (t867 + t869);
     const iiwa14_real_t t871 = IIWA14_C(2.0) * (t535 - t539 + (t508 + t525 + t533 - t534));
     const iiwa14_real_t t872 = IIWA14_C(0.0625) * (t871 + IIWA14_C(2.0) * (t174 * t188 + t175 * t182));
     const iiwa14_real_t t873 = IIWA14_C(1.6e3) * parameters[FV2] + t872;
+    /* link j3: derivatives */
     const iiwa14_real_t t874 = t98 * t568 + t100 * t569 + IIWA14_C(2.0) * (t148 * t188 - t74 * t182);
     const iiwa14_real_t t875 = IIWA14_C(0.0625) * t874;
+    /* link j4: derivatives */
     const iiwa14_real_t t876 = t98 * t581 + t100 * t582 - t104 * t573 + IIWA14_C(2.0) * (t167 * t188
         + t91 * t182);
     const iiwa14_real_t t877 = IIWA14_C(0.0625) * t876;
     const iiwa14_real_t t878 = t870 * t424 - t873 * t558 - t875 * t567 + t877 * t578;
+    /* link j5: derivatives */
     const iiwa14_real_t t879 = t98 * t600 + t100 * t601 + t602 * t573 + IIWA14_C(2.0) * (t162 * t188
         + t85 * t182);
     const iiwa14_real_t t880 = IIWA14_C(0.125) * t879;
+    /* link j6: derivatives */
     const iiwa14_real_t t881 = t98 * t620 + t100 * t621 + t622 * t573 + IIWA14_C(2.0) * (t158 * t188
         + t82 * t182);
     const iiwa14_real_t t882 = IIWA14_C(0.125) * t881;
+    /* link j7: derivatives */
     const iiwa14_real_t t883 = t98 * t644 + t100 * t645 - t646 * t573 + IIWA14_C(2.0) * (t154 * t188
         + t78 * t182);
     const iiwa14_real_t t884 = IIWA14_C(0.125) * t883;
@@ -1220,8 +1288,8 @@ int iiwa14_forward_dynamics_derivatives(
     ddq_by_input[29] = t687;
     ddq_by_input[36] = t701;
     ddq_by_input[43] = t712;
-    const iiwa14_real_t t898 = t361 + t350;
-    const iiwa14_real_t t899 = IIWA14_C(2.0) * t184;
+    const iiwa14_real_t t898 = t361 + t350; /* link j4: motion */
+    const iiwa14_real_t t899 = IIWA14_C(2.0) * t184; /* link j3: derivatives */
     const iiwa14_real_t t900 = IIWA14_C(2.0) * t183;
     const iiwa14_real_t t901 = t508 * t899 + t517 * t900 + (t97 * t898 + (t132 * t724 + t133 * t732));
     const iiwa14_real_t t902 = t818 + (t901 - t125 * t763);
@@ -1312,8 +1380,8 @@ int iiwa14_forward_dynamics_derivatives(
     ddq_by_input[37] = t702;
     ddq_by_input[44] = t713;
     const iiwa14_real_t t968 = t26 * t735;
-    const iiwa14_real_t t969 = t266 + t336;
-    const iiwa14_real_t t970 = IIWA14_C(2.0) * t209;
+    const iiwa14_real_t t969 = t266 + t336; /* link j5: motion */
+    const iiwa14_real_t t970 = IIWA14_C(2.0) * t209; /* link j4: derivatives */
     const iiwa14_real_t t971 = IIWA14_C(-2.0) * t198;
     const iiwa14_real_t t972 = t494 * t970 + t488 * t971 + (t90 * t969 - (t968 + t70 * t742));
     const iiwa14_real_t t973 = t41 * t769;
@@ -1408,8 +1476,8 @@ int iiwa14_forward_dynamics_derivatives(
     ddq_by_input[31] = t689;
     ddq_by_input[38] = t703;
     ddq_by_input[45] = t714;
-    const iiwa14_real_t t1043 = t314 + t305;
-    const iiwa14_real_t t1044 = IIWA14_C(2.0) * t203;
+    const iiwa14_real_t t1043 = t314 + t305; /* link j6: motion */
+    const iiwa14_real_t t1044 = IIWA14_C(2.0) * t203; /* link j5: derivatives */
     const iiwa14_real_t t1045 = IIWA14_C(-2.0) * t202;
     const iiwa14_real_t t1046 = t455 * t1044 + t464 * t1045 + (t31 * t1043 + (t57 * t746 - t56 * t738));
     const iiwa14_real_t t1047 = t794 + (t1046 - t48 * t768);
@@ -1513,8 +1581,8 @@ int iiwa14_forward_dynamics_derivatives(
     ddq_by_input[39] = t695;
     ddq_by_input[46] = t698;
     const iiwa14_real_t t1126 = parameters[ZZ7] * t749;
-    const iiwa14_real_t t1127 = t297 + t285;
-    const iiwa14_real_t t1128 = IIWA14_C(-2.0) * t222;
+    const iiwa14_real_t t1127 = t297 + t285; /* link j7: motion */
+    const iiwa14_real_t t1128 = IIWA14_C(-2.0) * t222; /* link j6: derivatives */
     const iiwa14_real_t t1129 = IIWA14_C(-2.0) * t230;
     const iiwa14_real_t t1130 = t446 * t1128 + t441 * t1129 - (t1126 + t23 * t756 - t14 * t1127);
     const iiwa14_real_t t1131 = t35 * t771;
@@ -1623,8 +1691,8 @@ int iiwa14_forward_dynamics_derivatives(
     ddq_by_input[33] = t695;
     ddq_by_input[40] = t706;
     ddq_by_input[47] = t709;
-    const iiwa14_real_t t1215 = t278 + t249;
-    const iiwa14_real_t t1216 = IIWA14_C(-2.0) * t234;
+    const iiwa14_real_t t1215 = t278 + t249; /* link j7: force and moment */
+    const iiwa14_real_t t1216 = IIWA14_C(-2.0) * t234; /* link j7: derivatives */
     const iiwa14_real_t t1217 = IIWA14_C(-2.0) * t240;
     const iiwa14_real_t t1218 = t433 * t1217 - t427 * t1216 - (parameters[XZ7R] * t1215
         - (parameters[XY7] * t752 - parameters[XX7R] * t754));

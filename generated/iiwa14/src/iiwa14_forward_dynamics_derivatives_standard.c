@@ -7,7 +7,7 @@
  * Arm iiwa14, description 4f01a5afe35e97fd.
  * SPDX-License-Identifier: 0BSD
  *
- * Operations: 5221 (2856 mul, 2365 add, 0 neg), 7 div, 12 trig, 7 other.
+ * Operations: 5221 (2856 mul, 2365 add, 0 neg), 7 div, 12 trig, 7 other calls (sign, select and the like).
  *
  * @param[in]   q             [7]   [rad]                    joint coordinates; norm at most 10000
  * @param[in]   dq            [7]   [rad/s]                  joint velocities; norm at most 100000
@@ -15,9 +15,9 @@
  *                                                           norm at most 1e+09
  * @param[in]   parameters    [91]                           standard parameters; norm at most 1e+09
  * @param[out]  ddq           [7]   [rad/s^2]                joint accelerations
- * @param[out]  ddq_by_q      [49]  [(rad/s^2) per (rad)]    d ddq / d q; 7 x 7, row-major
+ * @param[out]  ddq_by_q      [49]  [(rad/s^2) per rad]      d ddq / d q; 7 x 7, row-major
  * @param[out]  ddq_by_dq     [49]  [(rad/s^2) per (rad/s)]  d ddq / d dq; 7 x 7, row-major
- * @param[out]  ddq_by_input  [49]  [(rad/s^2) per (A)]      d ddq / d input; 7 x 7, row-major
+ * @param[out]  ddq_by_input  [49]  [(rad/s^2) per A]        d ddq / d input; 7 x 7, row-major
  *
  * Coordinates:
  *
@@ -125,11 +125,11 @@
  */
 #include "iiwa14_private.h"
 
-#if IIWA14_GENERATION != 0x27C72E36UL
+#if IIWA14_GENERATION != 0x1E31C9F2UL
 #error "iiwa14.h and iiwa14_forward_dynamics_derivatives_standard.c are of different generations: generate the arm again"
 #endif
 
-int iiwa14_forward_dynamics_derivatives_standard(
+iiwa14_status_t iiwa14_forward_dynamics_derivatives_standard(
     const iiwa14_real_t q[IIWA14_N_JOINTS],
     const iiwa14_real_t dq[IIWA14_N_JOINTS],
     const iiwa14_real_t input[IIWA14_N_JOINTS],
@@ -144,7 +144,7 @@ int iiwa14_forward_dynamics_derivatives_standard(
         XX5, XY5, XZ5, YY5, YZ5, ZZ5, MX5, MY5, MZ5, M5, XX6, XY6, XZ6, YY6, YZ6, ZZ6, MX6, MY6, MZ6, M6, XX7,
         XY7, XZ7, YY7, YZ7, ZZ7, MX7, MY7, MZ7, M7, FV1, FC1, IA1, FV2, FC2, IA2, FV3, FC3, IA3, FV4, FC4,
         IA4, FV5, FC5, IA5, FV6, FC6, IA6, FV7, FC7, IA7 };
-    int status = IIWA14_STATUS_OK;
+    iiwa14_status_t status = IIWA14_STATUS_OK;
 
     if (!iiwa14_within_joints(q, IIWA14_C(1.0e8))
         || !iiwa14_within_joints(dq, IIWA14_C(1.0e10))
@@ -180,11 +180,12 @@ int iiwa14_forward_dynamics_derivatives_standard(
         iiwa14_zero(ddq_by_input, 49);
         return IIWA14_STATUS_PIVOT;
     }
+    /* link j7: column of the mass matrix */
     const iiwa14_real_t t3 = t2 * parameters[MY7] + t1 * parameters[MX7];
     const iiwa14_real_t t4 = IIWA14_C(0.126) * t3 - (t1 * parameters[XZ7] + t2 * parameters[YZ7]);
     const iiwa14_real_t t5 = IIWA14_C(1.0) / t0;
     const iiwa14_real_t t6 = t4 * t5;
-    const iiwa14_real_t t7 = parameters[YY7] - parameters[XX7];
+    const iiwa14_real_t t7 = parameters[YY7] - parameters[XX7]; /* link j7: inertia of it and all beyond */
     const iiwa14_real_t t8 = t2 * t7 + parameters[XY7] * (IIWA14_C(2.0) * t1);
     const iiwa14_real_t t9 = t2 * t8;
     const iiwa14_real_t t10 = IIWA14_C(0.126) * parameters[M7];
@@ -209,18 +210,20 @@ int iiwa14_forward_dynamics_derivatives_standard(
     }
     const iiwa14_real_t t16 = parameters[XX6] + (parameters[YY7] - t9 + t11);
     const iiwa14_real_t t17 = parameters[YY6] + parameters[ZZ7];
+    /* link j7: column of the mass matrix */
     const iiwa14_real_t t19 = t2 * parameters[MX7] - t1 * parameters[MY7];
     const iiwa14_real_t t20 = t1 * parameters[YZ7] - t2 * parameters[XZ7] + IIWA14_C(0.126) * t19;
-    const iiwa14_real_t t21 = parameters[XY6] + t20;
+    const iiwa14_real_t t21 = parameters[XY6] + t20; /* link j7: inertia of it and all beyond */
+    /* link j6: inertia of it and all beyond */
     const iiwa14_real_t t23 = t18 * (t16 - t17) + t21 * (IIWA14_C(-2.0) * t22);
     const iiwa14_real_t t24 = t18 * t23;
     const iiwa14_real_t t25 = parameters[ZZ5] + (t16 - t24);
     const iiwa14_real_t t26 = t25 + IIWA14_C(1.0e4) * parameters[IA5];
-    const iiwa14_real_t t27 = t22 * t20 + t18 * parameters[ZZ7];
+    const iiwa14_real_t t27 = t22 * t20 + t18 * parameters[ZZ7]; /* link j7: column of the mass matrix */
     const iiwa14_real_t t28 = t27 * t5;
-    const iiwa14_real_t t29 = parameters[YZ6] + t4;
+    const iiwa14_real_t t29 = parameters[YZ6] + t4; /* link j7: inertia of it and all beyond */
     const iiwa14_real_t t30 = t1 * t8 - parameters[XY7] - parameters[XZ6];
-    const iiwa14_real_t t31 = t18 * t29 - t22 * t30;
+    const iiwa14_real_t t31 = t18 * t29 - t22 * t30; /* link j6: column of the mass matrix */
     const iiwa14_real_t t32 = t31 - t27 * t6;
     const iiwa14_real_t t33 = IIWA14_C(1.0) / t14;
     const iiwa14_real_t t34 = t32 * t33;
@@ -240,39 +243,40 @@ int iiwa14_forward_dynamics_derivatives_standard(
         iiwa14_zero(ddq_by_input, 49);
         return IIWA14_STATUS_PIVOT;
     }
-    const iiwa14_real_t t37 = parameters[XX5] + (t17 + t24);
+    const iiwa14_real_t t37 = parameters[XX5] + (t17 + t24); /* link j6: inertia of it and all beyond */
     const iiwa14_real_t t38 = parameters[YY5] + t12;
-    const iiwa14_real_t t40 = t18 * t30 + t22 * t29;
-    const iiwa14_real_t t41 = parameters[XY5] - t40;
+    const iiwa14_real_t t40 = t18 * t30 + t22 * t29; /* link j6: column of the mass matrix */
+    const iiwa14_real_t t41 = parameters[XY5] - t40; /* link j6: inertia of it and all beyond */
+    /* link j5: inertia of it and all beyond */
     const iiwa14_real_t t43 = t39 * (t37 - t38) + t41 * (IIWA14_C(-2.0) * t42);
     const iiwa14_real_t t44 = t39 * t43;
-    const iiwa14_real_t t45 = parameters[MX6] + t19;
+    const iiwa14_real_t t45 = parameters[MX6] + t19; /* link j7: inertia of it and all beyond */
     const iiwa14_real_t t46 = parameters[MZ7] + t10;
     const iiwa14_real_t t47 = t46 - parameters[MY6];
-    const iiwa14_real_t t48 = t18 * t47 - t22 * t45;
-    const iiwa14_real_t t49 = parameters[MZ5] + t48;
-    const iiwa14_real_t t50 = parameters[M6] + parameters[M7];
-    const iiwa14_real_t t51 = parameters[M5] + t50;
-    const iiwa14_real_t t52 = IIWA14_C(0.4) * t51;
+    const iiwa14_real_t t48 = t18 * t47 - t22 * t45; /* link j6: column of the mass matrix */
+    const iiwa14_real_t t49 = parameters[MZ5] + t48; /* link j6: inertia of it and all beyond */
+    const iiwa14_real_t t50 = parameters[M6] + parameters[M7]; /* link j7: inertia of it and all beyond */
+    const iiwa14_real_t t51 = parameters[M5] + t50; /* link j6: inertia of it and all beyond */
+    const iiwa14_real_t t52 = IIWA14_C(0.4) * t51; /* link j5: inertia of it and all beyond */
     const iiwa14_real_t t53 = IIWA14_C(0.4) * (t52 + IIWA14_C(2.0) * t49);
     const iiwa14_real_t t54 = parameters[ZZ4] + (t37 - t44 + t53);
     const iiwa14_real_t t55 = t54 + IIWA14_C(2.56e4) * parameters[IA4];
-    const iiwa14_real_t t56 = t18 * t20 - t22 * parameters[ZZ7];
+    const iiwa14_real_t t56 = t18 * t20 - t22 * parameters[ZZ7]; /* link j7: column of the mass matrix */
     const iiwa14_real_t t57 = t18 * t3;
     const iiwa14_real_t t58 = t39 * t57 + t42 * t19;
     const iiwa14_real_t t59 = t42 * t56 + t39 * t4 + IIWA14_C(0.4) * t58;
     const iiwa14_real_t t60 = t59 * t5;
-    const iiwa14_real_t t61 = t39 * t48;
+    const iiwa14_real_t t61 = t39 * t48; /* link j6: column of the mass matrix */
     const iiwa14_real_t t62 = t42 * t40 - t39 * t12 + IIWA14_C(-0.4) * t61;
     const iiwa14_real_t t63 = t62 + t59 * t6;
     const iiwa14_real_t t64 = t63 * t33;
-    const iiwa14_real_t t65 = t21 + t22 * t23 - parameters[XZ5];
+    const iiwa14_real_t t65 = t21 + t22 * t23 - parameters[XZ5]; /* link j6: inertia of it and all beyond */
     const iiwa14_real_t t66 = t31 - parameters[YZ5];
-    const iiwa14_real_t t67 = parameters[MZ6] + t3;
-    const iiwa14_real_t t68 = parameters[MY5] + t67;
-    const iiwa14_real_t t69 = t22 * t47 + t18 * t45;
-    const iiwa14_real_t t70 = parameters[MX5] + t69;
-    const iiwa14_real_t t71 = t39 * t68 + t42 * t70;
+    const iiwa14_real_t t67 = parameters[MZ6] + t3; /* link j7: inertia of it and all beyond */
+    const iiwa14_real_t t68 = parameters[MY5] + t67; /* link j6: inertia of it and all beyond */
+    const iiwa14_real_t t69 = t22 * t47 + t18 * t45; /* link j6: column of the mass matrix */
+    const iiwa14_real_t t70 = parameters[MX5] + t69; /* link j6: inertia of it and all beyond */
+    const iiwa14_real_t t71 = t39 * t68 + t42 * t70; /* link j5: column of the mass matrix */
     const iiwa14_real_t t72 = t42 * t65 + t39 * t66 + IIWA14_C(0.4) * t71;
     const iiwa14_real_t t73 = t59 * t28 - t72 - t63 * t34;
     const iiwa14_real_t t74 = IIWA14_C(1.0) / t35;
@@ -293,26 +297,27 @@ int iiwa14_forward_dynamics_derivatives_standard(
         iiwa14_zero(ddq_by_input, 49);
         return IIWA14_STATUS_PIVOT;
     }
-    const iiwa14_real_t t78 = t41 + t42 * t43 - parameters[XZ4];
+    const iiwa14_real_t t78 = t41 + t42 * t43 - parameters[XZ4]; /* link j5: inertia of it and all beyond */
     const iiwa14_real_t t80 = parameters[YZ4] + t72;
-    const iiwa14_real_t t82 = t81 * t80 - t79 * t78;
-    const iiwa14_real_t t83 = t42 * t57 - t39 * t19;
+    const iiwa14_real_t t82 = t81 * t80 - t79 * t78; /* link j4: column of the mass matrix */
+    const iiwa14_real_t t83 = t42 * t57 - t39 * t19; /* link j7: column of the mass matrix */
     const iiwa14_real_t t84 = t39 * t56 - t42 * t4 + IIWA14_C(-0.4) * t83;
     const iiwa14_real_t t85 = t81 * t27 - t79 * t84;
-    const iiwa14_real_t t86 = t42 * t48;
+    const iiwa14_real_t t86 = t42 * t48; /* link j6: column of the mass matrix */
     const iiwa14_real_t t87 = t39 * t40 + t42 * t12 + IIWA14_C(0.4) * t86;
     const iiwa14_real_t t88 = t79 * t87 + t81 * t31;
     const iiwa14_real_t t89 = t85 * t6 - t88;
-    const iiwa14_real_t t90 = t39 * t70 - t42 * t68;
+    const iiwa14_real_t t90 = t39 * t70 - t42 * t68; /* link j5: column of the mass matrix */
     const iiwa14_real_t t91 = t39 * t65 - t42 * t66 + IIWA14_C(0.4) * t90;
     const iiwa14_real_t t92 = t81 * t25 - t79 * t91;
     const iiwa14_real_t t93 = t92 - t85 * t28 + t89 * t34;
     const iiwa14_real_t t94 = t82 - t85 * t60 - t89 * t64 + t93 * t75;
     const iiwa14_real_t t95 = IIWA14_C(1.0) / t76;
     const iiwa14_real_t t96 = t94 * t95;
-    const iiwa14_real_t t97 = parameters[XX4] + (t38 + t44 + t53);
+    const iiwa14_real_t t97 = parameters[XX4] + (t38 + t44 + t53); /* link j5: inertia of it and all beyond */
     const iiwa14_real_t t98 = parameters[YY4] + t25;
     const iiwa14_real_t t99 = t91 - parameters[XY4];
+    /* link j4: inertia of it and all beyond */
     const iiwa14_real_t t100 = t81 * (t98 - t97) - t99 * (IIWA14_C(2.0) * t79);
     const iiwa14_real_t t101 = t81 * t100;
     const iiwa14_real_t t102 = parameters[ZZ3] + (t97 + t101);
@@ -339,51 +344,52 @@ int iiwa14_forward_dynamics_derivatives_standard(
     }
     const iiwa14_real_t t110 = parameters[XX3] + (t98 - t101);
     const iiwa14_real_t t111 = parameters[YY3] + t54;
-    const iiwa14_real_t t113 = t81 * t78 + t79 * t80;
-    const iiwa14_real_t t114 = parameters[XY3] + t113;
+    const iiwa14_real_t t113 = t81 * t78 + t79 * t80; /* link j4: column of the mass matrix */
+    const iiwa14_real_t t114 = parameters[XY3] + t113; /* link j4: inertia of it and all beyond */
+    /* link j3: inertia of it and all beyond */
     const iiwa14_real_t t116 = t112 * (t111 - t110) + t114 * (IIWA14_C(2.0) * t115);
     const iiwa14_real_t t117 = t112 * t116;
-    const iiwa14_real_t t118 = parameters[MX4] + t90;
+    const iiwa14_real_t t118 = parameters[MX4] + t90; /* link j5: inertia of it and all beyond */
     const iiwa14_real_t t119 = t49 + t52;
     const iiwa14_real_t t120 = parameters[MY4] + t119;
-    const iiwa14_real_t t121 = t81 * t120 + t79 * t118;
-    const iiwa14_real_t t122 = parameters[MZ3] + t121;
-    const iiwa14_real_t t123 = parameters[M4] + t51;
-    const iiwa14_real_t t124 = parameters[M3] + t123;
-    const iiwa14_real_t t125 = IIWA14_C(-0.42) * t124;
+    const iiwa14_real_t t121 = t81 * t120 + t79 * t118; /* link j4: column of the mass matrix */
+    const iiwa14_real_t t122 = parameters[MZ3] + t121; /* link j4: inertia of it and all beyond */
+    const iiwa14_real_t t123 = parameters[M4] + t51; /* link j5: inertia of it and all beyond */
+    const iiwa14_real_t t124 = parameters[M3] + t123; /* link j4: inertia of it and all beyond */
+    const iiwa14_real_t t125 = IIWA14_C(-0.42) * t124; /* link j3: inertia of it and all beyond */
     const iiwa14_real_t t126 = IIWA14_C(0.42) * (IIWA14_C(2.0) * t122 - t125);
     const iiwa14_real_t t127 = parameters[ZZ2] + (t110 + t117 + t126);
     const iiwa14_real_t t128 = t127 + IIWA14_C(2.56e4) * parameters[IA2];
-    const iiwa14_real_t t129 = t81 * t84 + t79 * t27;
+    const iiwa14_real_t t129 = t81 * t84 + t79 * t27; /* link j7: column of the mass matrix */
     const iiwa14_real_t t130 = t22 * t3;
     const iiwa14_real_t t131 = t81 * t58 + t79 * t130;
     const iiwa14_real_t t132 = t112 * t131 - t115 * t83;
     const iiwa14_real_t t133 = t115 * t129 + t112 * t59 + IIWA14_C(0.42) * t132;
     const iiwa14_real_t t134 = t133 * t5;
-    const iiwa14_real_t t135 = t79 * t31 - t81 * t87;
+    const iiwa14_real_t t135 = t79 * t31 - t81 * t87; /* link j6: column of the mass matrix */
     const iiwa14_real_t t136 = t81 * t61 + t79 * t69;
     const iiwa14_real_t t137 = t115 * t86 - t112 * t136;
     const iiwa14_real_t t138 = t112 * t62 - t115 * t135 + IIWA14_C(0.42) * t137;
     const iiwa14_real_t t139 = t138 + t133 * t6;
     const iiwa14_real_t t140 = t139 * t33;
-    const iiwa14_real_t t141 = t81 * t91 + t79 * t25;
+    const iiwa14_real_t t141 = t81 * t91 + t79 * t25; /* link j5: column of the mass matrix */
     const iiwa14_real_t t142 = t81 * t71;
     const iiwa14_real_t t143 = t112 * t142 + t115 * t90;
     const iiwa14_real_t t144 = t115 * t141 + t112 * t72 + IIWA14_C(0.42) * t143;
     const iiwa14_real_t t145 = t144 - t133 * t28 + t139 * t34;
     const iiwa14_real_t t146 = t145 * t74;
     const iiwa14_real_t t147 = t128 - t133 * t134 - t139 * t140 - t145 * t146;
-    const iiwa14_real_t t148 = t112 * t121;
+    const iiwa14_real_t t148 = t112 * t121; /* link j4: column of the mass matrix */
     const iiwa14_real_t t149 = t115 * t113 + t112 * t54 + IIWA14_C(0.42) * t148;
     const iiwa14_real_t t150 = t149 - t133 * t60 - t139 * t64 + t145 * t75;
     const iiwa14_real_t t151 = t150 * t95;
-    const iiwa14_real_t t152 = t99 + t79 * t100 - parameters[XZ3];
+    const iiwa14_real_t t152 = t99 + t79 * t100 - parameters[XZ3]; /* link j4: inertia of it and all beyond */
     const iiwa14_real_t t153 = parameters[YZ3] - t82;
-    const iiwa14_real_t t154 = parameters[MZ4] - t71;
-    const iiwa14_real_t t155 = t154 - parameters[MY3];
-    const iiwa14_real_t t156 = t81 * t118 - t79 * t120;
-    const iiwa14_real_t t157 = parameters[MX3] + t156;
-    const iiwa14_real_t t158 = t112 * t155 - t115 * t157;
+    const iiwa14_real_t t154 = parameters[MZ4] - t71; /* link j5: inertia of it and all beyond */
+    const iiwa14_real_t t155 = t154 - parameters[MY3]; /* link j4: inertia of it and all beyond */
+    const iiwa14_real_t t156 = t81 * t118 - t79 * t120; /* link j4: column of the mass matrix */
+    const iiwa14_real_t t157 = parameters[MX3] + t156; /* link j4: inertia of it and all beyond */
+    const iiwa14_real_t t158 = t112 * t155 - t115 * t157; /* link j3: column of the mass matrix */
     const iiwa14_real_t t159 = t115 * t152 - t112 * t153 + IIWA14_C(-0.42) * t158;
     const iiwa14_real_t t160 = t159 - t133 * t104 - t139 * t105 - t145 * t106;
     const iiwa14_real_t t161 = t160 - t150 * t96;
@@ -405,32 +411,35 @@ int iiwa14_forward_dynamics_derivatives_standard(
         iiwa14_zero(ddq_by_input, 49);
         return IIWA14_STATUS_PIVOT;
     }
+    /* link j3: inertia of it and all beyond */
     const iiwa14_real_t t166 = t115 * t116 - t114 - parameters[XZ2];
     const iiwa14_real_t t168 = parameters[YZ2] + t159;
-    const iiwa14_real_t t170 = t115 * t131 + t112 * t83;
+    const iiwa14_real_t t170 = t115 * t131 + t112 * t83; /* link j7: column of the mass matrix */
     const iiwa14_real_t t171 = t115 * t59 - t112 * t129 + IIWA14_C(0.42) * t170;
     const iiwa14_real_t t172 = t167 * t171 - t169 * t85;
-    const iiwa14_real_t t173 = t115 * t136 + t112 * t86;
+    const iiwa14_real_t t173 = t115 * t136 + t112 * t86; /* link j6: column of the mass matrix */
     const iiwa14_real_t t174 = t112 * t135 + t115 * t62 + IIWA14_C(-0.42) * t173;
     const iiwa14_real_t t175 = t167 * t174 + t169 * t88 + t172 * t6;
     const iiwa14_real_t t176 = t167 * t166 - t169 * t168 - t172 * t134 - t175 * t140;
-    const iiwa14_real_t t177 = t115 * t142 - t112 * t90;
+    const iiwa14_real_t t177 = t115 * t142 - t112 * t90; /* link j5: column of the mass matrix */
     const iiwa14_real_t t178 = t115 * t72 - t112 * t141 + IIWA14_C(0.42) * t177;
     const iiwa14_real_t t179 = t167 * t178 - t169 * t92 - t172 * t28 + t175 * t34;
-    const iiwa14_real_t t180 = t115 * t121;
+    const iiwa14_real_t t180 = t115 * t121; /* link j4: column of the mass matrix */
     const iiwa14_real_t t181 = t115 * t54 - t112 * t113 + IIWA14_C(0.42) * t180;
     const iiwa14_real_t t182 = t167 * t181 - t169 * t82 - t172 * t60 - t175 * t64;
     const iiwa14_real_t t183 = t182 + t179 * t75;
-    const iiwa14_real_t t184 = t115 * t155 + t112 * t157;
+    const iiwa14_real_t t184 = t115 * t155 + t112 * t157; /* link j3: column of the mass matrix */
     const iiwa14_real_t t185 = t112 * t152 + t115 * t153 + IIWA14_C(0.42) * t184;
     const iiwa14_real_t t186 = t167 * t185 + t169 * t102 + t172 * t104 + t175 * t105;
     const iiwa14_real_t t187 = t186 + t179 * t106 + t183 * t96;
     const iiwa14_real_t t188 = t176 - t179 * t146 - t183 * t151 + t187 * t163;
     const iiwa14_real_t t189 = IIWA14_C(1.0) / t164;
     const iiwa14_real_t t190 = t188 * t189;
+    /* link j3: inertia of it and all beyond */
     const iiwa14_real_t t191 = t117 - t111 - t126 - parameters[XX2];
     const iiwa14_real_t t192 = parameters[YY2] + t102;
     const iiwa14_real_t t193 = parameters[XY2] + t185;
+    /* link j2: inertia of it and all beyond */
     const iiwa14_real_t t194 = t169 * (t169 * (t191 + t192) + t193 * (IIWA14_C(2.0) * t167));
     const iiwa14_real_t t195 = parameters[ZZ1] + (t194 - t191) + IIWA14_C(2.56e4) * parameters[IA1];
     const iiwa14_real_t t196 = t172 * t5;
@@ -455,307 +464,330 @@ int iiwa14_forward_dynamics_derivatives_standard(
         iiwa14_zero(ddq_by_input, 49);
         return IIWA14_STATUS_PIVOT;
     }
-    const iiwa14_real_t t204 = t167 * dq[0];
-    const iiwa14_real_t t205 = t112 * t204 - t115 * dq[1];
-    const iiwa14_real_t t206 = t169 * dq[0];
-    const iiwa14_real_t t207 = dq[2] + t206;
-    const iiwa14_real_t t208 = t81 * t205 - t79 * t207;
-    const iiwa14_real_t t209 = t115 * t204 + t112 * dq[1];
-    const iiwa14_real_t t210 = t209 - dq[3];
-    const iiwa14_real_t t211 = t39 * t208 - t42 * t210;
+    const iiwa14_real_t t204 = t167 * dq[0]; /* link j2: motion */
+    const iiwa14_real_t t205 = t112 * t204 - t115 * dq[1]; /* link j3: motion */
+    const iiwa14_real_t t206 = t169 * dq[0]; /* link j2: motion */
+    const iiwa14_real_t t207 = dq[2] + t206; /* link j3: motion */
+    const iiwa14_real_t t208 = t81 * t205 - t79 * t207; /* link j4: motion */
+    const iiwa14_real_t t209 = t115 * t204 + t112 * dq[1]; /* link j3: motion */
+    const iiwa14_real_t t210 = t209 - dq[3]; /* link j4: motion */
+    const iiwa14_real_t t211 = t39 * t208 - t42 * t210; /* link j5: motion */
     const iiwa14_real_t t212 = t42 * t208 + t39 * t210;
     const iiwa14_real_t t213 = t211 * t212;
-    const iiwa14_real_t t214 = t205 * t209;
-    const iiwa14_real_t t215 = dq[1] * t204;
-    const iiwa14_real_t t216 = t215 - t214;
-    const iiwa14_real_t t217 = t209 * t207;
-    const iiwa14_real_t t218 = t204 * t206;
+    const iiwa14_real_t t214 = t205 * t209; /* link j3: motion */
+    const iiwa14_real_t t215 = dq[1] * t204; /* link j2: motion */
+    const iiwa14_real_t t216 = t215 - t214; /* link j4: motion */
+    const iiwa14_real_t t217 = t209 * t207; /* link j3: motion */
+    const iiwa14_real_t t218 = t204 * t206; /* link j2: motion */
     const iiwa14_real_t t219 = dq[1] * t206;
     const iiwa14_real_t t220 = IIWA14_C(-2.0) * t219;
-    const iiwa14_real_t t221 = t115 * t218 - t112 * t220;
+    const iiwa14_real_t t221 = t115 * t218 - t112 * t220; /* link j3: motion */
     const iiwa14_real_t t222 = t221 - t217;
-    const iiwa14_real_t t223 = t222 - t217;
+    const iiwa14_real_t t223 = t222 - t217; /* link j4: motion */
     const iiwa14_real_t t224 = t81 * t216 - t79 * t223;
     const iiwa14_real_t t225 = t208 * t210;
     const iiwa14_real_t t226 = t225 + t224;
-    const iiwa14_real_t t227 = t213 - t226;
-    const iiwa14_real_t t228 = t79 * t205 + t81 * t207;
+    const iiwa14_real_t t227 = t213 - t226; /* link j6: motion */
+    const iiwa14_real_t t228 = t79 * t205 + t81 * t207; /* link j4: motion */
     const iiwa14_real_t t229 = t208 * t228;
-    const iiwa14_real_t t230 = t205 * t207;
+    const iiwa14_real_t t230 = t205 * t207; /* link j3: motion */
     const iiwa14_real_t t231 = t112 * t218 + t115 * t220;
     const iiwa14_real_t t232 = t231 - t230;
-    const iiwa14_real_t t233 = t229 + t232;
-    const iiwa14_real_t t234 = t79 * t216 + t81 * t223;
+    const iiwa14_real_t t233 = t229 + t232; /* link j5: motion */
+    const iiwa14_real_t t234 = t79 * t216 + t81 * t223; /* link j4: motion */
     const iiwa14_real_t t235 = t228 * t210;
     const iiwa14_real_t t236 = t235 + t234;
-    const iiwa14_real_t t237 = t235 + t236;
+    const iiwa14_real_t t237 = t235 + t236; /* link j5: motion */
     const iiwa14_real_t t238 = t42 * t233 + t39 * t237;
     const iiwa14_real_t t239 = dq[4] + t228;
     const iiwa14_real_t t240 = t212 * t239;
     const iiwa14_real_t t241 = t240 - t238;
-    const iiwa14_real_t t242 = t240 + t241;
+    const iiwa14_real_t t242 = t240 + t241; /* link j6: motion */
     const iiwa14_real_t t243 = t18 * t242 - t22 * t227;
     const iiwa14_real_t t244 = t22 * t211 - t18 * t239;
     const iiwa14_real_t t245 = dq[5] + t212;
     const iiwa14_real_t t246 = t244 * t245;
     const iiwa14_real_t t247 = t246 + t243;
-    const iiwa14_real_t t248 = t246 + t247;
-    const iiwa14_real_t t249 = t39 * t233 - t42 * t237;
+    const iiwa14_real_t t248 = t246 + t247; /* link j7: motion */
+    const iiwa14_real_t t249 = t39 * t233 - t42 * t237; /* link j5: motion */
     const iiwa14_real_t t250 = t211 * t239;
     const iiwa14_real_t t251 = t249 - t250;
-    const iiwa14_real_t t252 = t18 * t211 + t22 * t239;
+    const iiwa14_real_t t252 = t18 * t211 + t22 * t239; /* link j6: motion */
     const iiwa14_real_t t253 = t252 * t244;
-    const iiwa14_real_t t254 = t253 - t251;
+    const iiwa14_real_t t254 = t253 - t251; /* link j7: motion */
     const iiwa14_real_t t255 = t1 * t254 + t2 * t248;
     const iiwa14_real_t t256 = t1 * t252 + t2 * t245;
     const iiwa14_real_t t257 = t244 - dq[6];
     const iiwa14_real_t t258 = t256 * t257;
     const iiwa14_real_t t259 = t255 - t258;
-    const iiwa14_real_t t260 = t258 * (parameters[YY7] - parameters[ZZ7]);
-    const iiwa14_real_t t261 = t1 * t248 - t2 * t254;
+    const iiwa14_real_t t260 = t258 * (parameters[YY7] - parameters[ZZ7]); /* link j7: force and moment */
+    const iiwa14_real_t t261 = t1 * t248 - t2 * t254; /* link j7: motion */
     const iiwa14_real_t t262 = t1 * t245 - t2 * t252;
     const iiwa14_real_t t263 = t262 * t257;
     const iiwa14_real_t t264 = t261 - t263;
-    const iiwa14_real_t t265 = t264 - t263;
-    const iiwa14_real_t t266 = t18 * t227 + t22 * t242;
+    const iiwa14_real_t t265 = t264 - t263; /* link j7: force and moment */
+    const iiwa14_real_t t266 = t18 * t227 + t22 * t242; /* link j6: motion */
     const iiwa14_real_t t267 = t252 * t245;
     const iiwa14_real_t t268 = t266 - t267;
-    const iiwa14_real_t t269 = t262 * t256;
-    const iiwa14_real_t t270 = t269 + t268;
+    const iiwa14_real_t t269 = t262 * t256; /* link j7: motion */
+    const iiwa14_real_t t270 = t269 + t268; /* link j7: force and moment */
     const iiwa14_real_t t271 = parameters[XX7] * t259 + t260 - parameters[XY7] * t265
         + parameters[XZ7] * t270;
-    const iiwa14_real_t t272 = t256 * t256;
+    const iiwa14_real_t t272 = t256 * t256; /* link j7: motion */
     const iiwa14_real_t t273 = t257 * t257;
-    const iiwa14_real_t t274 = (t273 - t272) * parameters[YZ7];
-    const iiwa14_real_t t275 = t204 * t204;
+    const iiwa14_real_t t274 = (t273 - t272) * parameters[YZ7]; /* link j7: force and moment */
+    const iiwa14_real_t t275 = t204 * t204; /* link j2: motion */
     const iiwa14_real_t t276 = dq[1] * dq[1];
     const iiwa14_real_t t277 = IIWA14_C(9.81) * t169;
-    const iiwa14_real_t t278 = t277 + IIWA14_C(-0.42) * (t275 + t276);
-    const iiwa14_real_t t279 = t79 * t278;
-    const iiwa14_real_t t280 = IIWA14_C(-9.81) * t167;
-    const iiwa14_real_t t281 = IIWA14_C(0.42) * t218 - t280;
+    const iiwa14_real_t t278 = t277 + IIWA14_C(-0.42) * (t275 + t276); /* link j3: motion */
+    const iiwa14_real_t t279 = t79 * t278; /* link j4: motion */
+    const iiwa14_real_t t280 = IIWA14_C(-9.81) * t167; /* link j2: motion */
+    const iiwa14_real_t t281 = IIWA14_C(0.42) * t218 - t280; /* link j3: motion */
     const iiwa14_real_t t282 = IIWA14_C(0.84) * t219;
     const iiwa14_real_t t283 = t112 * t281 - t115 * t282;
-    const iiwa14_real_t t284 = t81 * t283 - t279;
-    const iiwa14_real_t t285 = t284 + IIWA14_C(0.4) * t233;
-    const iiwa14_real_t t286 = t115 * t281 + t112 * t282;
-    const iiwa14_real_t t287 = t286 + IIWA14_C(0.4) * t237;
+    const iiwa14_real_t t284 = t81 * t283 - t279; /* link j4: motion */
+    const iiwa14_real_t t285 = t284 + IIWA14_C(0.4) * t233; /* link j5: motion */
+    const iiwa14_real_t t286 = t115 * t281 + t112 * t282; /* link j3: motion */
+    const iiwa14_real_t t287 = t286 + IIWA14_C(0.4) * t237; /* link j5: motion */
     const iiwa14_real_t t288 = t42 * t287 - t39 * t285;
-    const iiwa14_real_t t289 = t208 * t208;
+    const iiwa14_real_t t289 = t208 * t208; /* link j4: motion */
     const iiwa14_real_t t290 = t210 * t210;
-    const iiwa14_real_t t291 = t289 + t290;
+    const iiwa14_real_t t291 = t289 + t290; /* link j5: motion */
     const iiwa14_real_t t292 = IIWA14_C(0.4) * t291;
-    const iiwa14_real_t t293 = t81 * t278;
+    const iiwa14_real_t t293 = t81 * t278; /* link j4: motion */
     const iiwa14_real_t t294 = t293 + t79 * t283;
-    const iiwa14_real_t t295 = t292 - t294;
-    const iiwa14_real_t t296 = t18 * t288 + t22 * t295;
-    const iiwa14_real_t t297 = t296 + IIWA14_C(0.126) * t254;
-    const iiwa14_real_t t298 = t42 * t285 + t39 * t287;
-    const iiwa14_real_t t299 = t298 + IIWA14_C(-0.126) * t248;
+    const iiwa14_real_t t295 = t292 - t294; /* link j5: motion */
+    const iiwa14_real_t t296 = t18 * t288 + t22 * t295; /* link j6: motion */
+    const iiwa14_real_t t297 = t296 + IIWA14_C(0.126) * t254; /* link j7: motion */
+    const iiwa14_real_t t298 = t42 * t285 + t39 * t287; /* link j5: motion */
+    const iiwa14_real_t t299 = t298 + IIWA14_C(-0.126) * t248; /* link j7: motion */
     const iiwa14_real_t t300 = t1 * t297 - t2 * t299;
-    const iiwa14_real_t t301 = t252 * t252;
+    const iiwa14_real_t t301 = t252 * t252; /* link j6: motion */
     const iiwa14_real_t t302 = t245 * t245;
-    const iiwa14_real_t t303 = t301 + t302;
+    const iiwa14_real_t t303 = t301 + t302; /* link j7: motion */
     const iiwa14_real_t t304 = IIWA14_C(-0.126) * t303;
-    const iiwa14_real_t t305 = t22 * t288 - t18 * t295;
-    const iiwa14_real_t t306 = t304 + t305;
+    const iiwa14_real_t t305 = t22 * t288 - t18 * t295; /* link j6: motion */
+    const iiwa14_real_t t306 = t304 + t305; /* link j7: motion */
+    /* link j7: force and moment */
     const iiwa14_real_t t307 = t271 - t274 + (parameters[MY7] * t306 + parameters[MZ7] * t300);
     const iiwa14_real_t t308 = t263 * (parameters[XX7] - parameters[ZZ7]);
     const iiwa14_real_t t309 = t259 - t258;
     const iiwa14_real_t t310 = t268 - t269;
     const iiwa14_real_t t311 = parameters[XY7] * t309 - (parameters[YY7] * t264 + t308)
         + parameters[YZ7] * t310;
-    const iiwa14_real_t t312 = t262 * t262;
-    const iiwa14_real_t t313 = (t312 - t273) * parameters[XZ7];
-    const iiwa14_real_t t314 = t2 * t297 + t1 * t299;
+    const iiwa14_real_t t312 = t262 * t262; /* link j7: motion */
+    const iiwa14_real_t t313 = (t312 - t273) * parameters[XZ7]; /* link j7: force and moment */
+    const iiwa14_real_t t314 = t2 * t297 + t1 * t299; /* link j7: motion */
+    /* link j7: force and moment */
     const iiwa14_real_t t315 = t311 - t313 + (parameters[MZ7] * t314 - parameters[MX7] * t306);
     const iiwa14_real_t t316 = (t272 + t273) * parameters[MX7];
     const iiwa14_real_t t317 = parameters[M7] * t314 - (t316 + parameters[MY7] * t310
         + parameters[MZ7] * t261);
     const iiwa14_real_t t318 = (t312 + t273) * parameters[MY7];
     const iiwa14_real_t t319 = parameters[MX7] * t270 - t318 - parameters[MZ7] * t255 - parameters[M7] * t300;
-    const iiwa14_real_t t320 = t1 * t317 + t2 * t319;
-    const iiwa14_real_t t321 = t246 * (parameters[YY6] - parameters[ZZ6]);
-    const iiwa14_real_t t322 = t268 - t267;
+    const iiwa14_real_t t320 = t1 * t317 + t2 * t319; /* link j7: what it passes on */
+    const iiwa14_real_t t321 = t246 * (parameters[YY6] - parameters[ZZ6]); /* link j6: force and moment */
+    const iiwa14_real_t t322 = t268 - t267; /* link j7: motion */
     const iiwa14_real_t t323 = t253 + t251;
+    /* link j6: force and moment */
     const iiwa14_real_t t324 = parameters[XX6] * t247 - t321 - parameters[XY6] * t322
         - parameters[XZ6] * t323;
-    const iiwa14_real_t t325 = t244 * t244;
-    const iiwa14_real_t t326 = (t325 - t302) * parameters[YZ6];
+    const iiwa14_real_t t325 = t244 * t244; /* link j6: motion */
+    const iiwa14_real_t t326 = (t325 - t302) * parameters[YZ6]; /* link j6: force and moment */
+    /* link j7: what it passes on */
     const iiwa14_real_t t327 = t324 + t326 + (parameters[MY6] * t298 + parameters[MZ6] * t305) + (t2 * t307
         - t1 * t315 - IIWA14_C(0.126) * t320);
-    const iiwa14_real_t t328 = t269 * t7;
+    const iiwa14_real_t t328 = t269 * t7; /* link j7: force and moment */
     const iiwa14_real_t t329 = parameters[YZ7] * t261 - (parameters[ZZ7] * t268 + t328)
         - parameters[XZ7] * t255;
     const iiwa14_real_t t330 = (t272 - t312) * parameters[XY7];
     const iiwa14_real_t t331 = t329 + t330 + (parameters[MX7] * t300 + parameters[MY7] * t314);
-    const iiwa14_real_t t332 = t267 * (parameters[ZZ6] - parameters[XX6]);
+    const iiwa14_real_t t332 = t267 * (parameters[ZZ6] - parameters[XX6]); /* link j6: force and moment */
     const iiwa14_real_t t333 = t332 - parameters[YY6] * t268 + parameters[XY6] * t248
         + parameters[YZ6] * t254;
     const iiwa14_real_t t334 = (t302 - t301) * parameters[XZ6];
+    /* link j7: what it passes on */
     const iiwa14_real_t t335 = t333 + t334 + (parameters[MZ6] * t296 - parameters[MX6] * t298) + t331;
-    const iiwa14_real_t t336 = t240 * (parameters[YY5] - parameters[ZZ5]);
-    const iiwa14_real_t t337 = t251 - t250;
+    const iiwa14_real_t t336 = t240 * (parameters[YY5] - parameters[ZZ5]); /* link j5: force and moment */
+    const iiwa14_real_t t337 = t251 - t250; /* link j6: motion */
     const iiwa14_real_t t338 = t213 + t226;
+    /* link j5: force and moment */
     const iiwa14_real_t t339 = t336 - parameters[XX5] * t241 + parameters[XY5] * t337
         + parameters[XZ5] * t338;
-    const iiwa14_real_t t340 = t212 * t212;
+    const iiwa14_real_t t340 = t212 * t212; /* link j5: motion */
     const iiwa14_real_t t341 = t239 * t239;
-    const iiwa14_real_t t342 = (t341 - t340) * parameters[YZ5];
+    const iiwa14_real_t t342 = (t341 - t340) * parameters[YZ5]; /* link j5: force and moment */
+    /* link j6: what it passes on */
     const iiwa14_real_t t343 = t339 + t342 + (parameters[MY5] * t295 + parameters[MZ5] * t298) + (t22 * t335
         - t18 * t327);
-    const iiwa14_real_t t344 = t1 * t319 - t2 * t317;
-    const iiwa14_real_t t345 = t253 * (parameters[YY6] - parameters[XX6]);
+    const iiwa14_real_t t344 = t1 * t319 - t2 * t317; /* link j7: what it passes on */
+    const iiwa14_real_t t345 = t253 * (parameters[YY6] - parameters[XX6]); /* link j6: force and moment */
     const iiwa14_real_t t346 = parameters[XZ6] * t243 - (parameters[ZZ6] * t251 + t345
         + parameters[YZ6] * t266);
     const iiwa14_real_t t347 = (t325 - t301) * parameters[XY6];
+    /* link j7: what it passes on */
     const iiwa14_real_t t348 = t346 - t347 - (parameters[MX6] * t305 + parameters[MY6] * t296) + (t1 * t307
         + t2 * t315 + IIWA14_C(-0.126) * t344);
-    const iiwa14_real_t t349 = t250 * (parameters[XX5] - parameters[ZZ5]);
+    const iiwa14_real_t t349 = t250 * (parameters[XX5] - parameters[ZZ5]); /* link j5: force and moment */
     const iiwa14_real_t t350 = parameters[XY5] * t242 - (parameters[YY5] * t251 + t349)
         + parameters[YZ5] * t227;
-    const iiwa14_real_t t351 = t211 * t211;
-    const iiwa14_real_t t352 = (t351 - t341) * parameters[XZ5];
+    const iiwa14_real_t t351 = t211 * t211; /* link j5: motion */
+    const iiwa14_real_t t352 = (t351 - t341) * parameters[XZ5]; /* link j5: force and moment */
+    /* link j6: what it passes on */
     const iiwa14_real_t t353 = t350 - t352 + (parameters[MZ5] * t288 + parameters[MX5] * t295) + t348;
-    const iiwa14_real_t t354 = (t325 + t302) * parameters[MX6];
+    const iiwa14_real_t t354 = (t325 + t302) * parameters[MX6]; /* link j6: force and moment */
     const iiwa14_real_t t355 = t354 + parameters[MY6] * t254 + parameters[MZ6] * t266 - parameters[M6] * t296;
-    const iiwa14_real_t t356 = t355 + t344;
-    const iiwa14_real_t t357 = t303 * parameters[MY6];
+    const iiwa14_real_t t356 = t355 + t344; /* link j7: what it passes on */
+    const iiwa14_real_t t357 = t303 * parameters[MY6]; /* link j6: force and moment */
     const iiwa14_real_t t358 = parameters[M6] * t305 + (parameters[MX6] * t323 + t357
         + parameters[MZ6] * t243);
-    const iiwa14_real_t t359 = t312 + t272;
-    const iiwa14_real_t t360 = t359 * parameters[MZ7];
+    const iiwa14_real_t t359 = t312 + t272; /* link j7: columns */
+    const iiwa14_real_t t360 = t359 * parameters[MZ7]; /* link j7: force and moment */
     const iiwa14_real_t t361 = parameters[M7] * t306 + (parameters[MX7] * t265 + parameters[MY7] * t309
         - t360);
-    const iiwa14_real_t t362 = t358 + t361;
-    const iiwa14_real_t t363 = (t340 + t341) * parameters[MX5];
+    const iiwa14_real_t t362 = t358 + t361; /* link j7: what it passes on */
+    const iiwa14_real_t t363 = (t340 + t341) * parameters[MX5]; /* link j5: force and moment */
     const iiwa14_real_t t364 = parameters[M5] * t288 - (t363 + parameters[MY5] * t227
         + parameters[MZ5] * t249);
-    const iiwa14_real_t t365 = t364 + (t22 * t362 - t18 * t356);
-    const iiwa14_real_t t366 = t301 + t325;
-    const iiwa14_real_t t367 = t366 * parameters[MZ6];
+    const iiwa14_real_t t365 = t364 + (t22 * t362 - t18 * t356); /* link j6: what it passes on */
+    const iiwa14_real_t t366 = t301 + t325; /* link j7: motion */
+    const iiwa14_real_t t367 = t366 * parameters[MZ6]; /* link j6: force and moment */
     const iiwa14_real_t t368 = parameters[M6] * t298 + (parameters[MX6] * t322 + parameters[MY6] * t248
         - t367);
-    const iiwa14_real_t t369 = (t351 + t341) * parameters[MY5];
+    const iiwa14_real_t t369 = (t351 + t341) * parameters[MY5]; /* link j5: force and moment */
     const iiwa14_real_t t370 = parameters[M5] * t298 + (parameters[MZ5] * t238 - (parameters[MX5] * t338
         + t369));
-    const iiwa14_real_t t371 = t370 + (t368 + t320);
-    const iiwa14_real_t t372 = t42 * t365 + t39 * t371;
-    const iiwa14_real_t t373 = t235 * (parameters[YY4] - parameters[ZZ4]);
-    const iiwa14_real_t t374 = t225 + t226;
+    const iiwa14_real_t t371 = t370 + (t368 + t320); /* link j6: what it passes on */
+    const iiwa14_real_t t372 = t42 * t365 + t39 * t371; /* link j5: what it passes on */
+    const iiwa14_real_t t373 = t235 * (parameters[YY4] - parameters[ZZ4]); /* link j4: force and moment */
+    const iiwa14_real_t t374 = t225 + t226; /* link j5: motion */
     const iiwa14_real_t t375 = t229 - t232;
+    /* link j4: force and moment */
     const iiwa14_real_t t376 = parameters[XX4] * t236 - t373 + parameters[XY4] * t374
         + parameters[XZ4] * t375;
-    const iiwa14_real_t t377 = t228 * t228;
-    const iiwa14_real_t t378 = (t290 - t377) * parameters[YZ4];
+    const iiwa14_real_t t377 = t228 * t228; /* link j4: motion */
+    const iiwa14_real_t t378 = (t290 - t377) * parameters[YZ4]; /* link j4: force and moment */
+    /* link j5: what it passes on */
     const iiwa14_real_t t379 = t376 + t378 + (parameters[MY4] * t286 + parameters[MZ4] * t294) + (t39 * t343
         + t42 * t353 + IIWA14_C(0.4) * t372);
-    const iiwa14_real_t t380 = t213 * (parameters[YY5] - parameters[XX5]);
+    const iiwa14_real_t t380 = t213 * (parameters[YY5] - parameters[XX5]); /* link j5: force and moment */
     const iiwa14_real_t t381 = parameters[ZZ5] * t226 + t380 + parameters[YZ5] * t249
         + parameters[XZ5] * t238;
     const iiwa14_real_t t382 = (t340 - t351) * parameters[XY5];
+    /* link j6: what it passes on */
     const iiwa14_real_t t383 = t381 + t382 + (parameters[MY5] * t288 - parameters[MX5] * t298) + (t22 * t327
         + t18 * t335);
-    const iiwa14_real_t t384 = t225 * (parameters[XX4] - parameters[ZZ4]);
+    const iiwa14_real_t t384 = t225 * (parameters[XX4] - parameters[ZZ4]); /* link j4: force and moment */
     const iiwa14_real_t t385 = parameters[YY4] * t226 - t384 + parameters[XY4] * t237
         - parameters[YZ4] * t233;
     const iiwa14_real_t t386 = (t289 - t290) * parameters[XZ4];
+    /* link j5: what it passes on */
     const iiwa14_real_t t387 = t385 + t386 + (parameters[MZ4] * t284 - parameters[MX4] * t286) + t383;
-    const iiwa14_real_t t388 = t217 * (parameters[ZZ3] - parameters[YY3]);
-    const iiwa14_real_t t389 = t215 + t214;
+    const iiwa14_real_t t388 = t217 * (parameters[ZZ3] - parameters[YY3]); /* link j3: force and moment */
+    const iiwa14_real_t t389 = t215 + t214; /* link j4: motion */
+    /* link j3: force and moment */
     const iiwa14_real_t t390 = t388 - parameters[XX3] * t222 + parameters[XY3] * (t230 - t232)
         - parameters[XZ3] * t389;
-    const iiwa14_real_t t391 = t209 * t209;
+    const iiwa14_real_t t391 = t209 * t209; /* link j3: motion */
     const iiwa14_real_t t392 = t207 * t207;
-    const iiwa14_real_t t393 = (t391 - t392) * parameters[YZ3];
+    const iiwa14_real_t t393 = (t391 - t392) * parameters[YZ3]; /* link j3: force and moment */
     const iiwa14_real_t t394 = t278 * parameters[MY3];
+    /* link j4: what it passes on */
     const iiwa14_real_t t395 = t390 + t393 + (t394 - parameters[MZ3] * t286) + (t79 * t387 - t81 * t379);
-    const iiwa14_real_t t396 = t42 * t371 - t39 * t365;
-    const iiwa14_real_t t397 = t229 * (parameters[XX4] - parameters[YY4]);
+    const iiwa14_real_t t396 = t42 * t371 - t39 * t365; /* link j5: what it passes on */
+    const iiwa14_real_t t397 = t229 * (parameters[XX4] - parameters[YY4]); /* link j4: force and moment */
     const iiwa14_real_t t398 = parameters[ZZ4] * t232 + t397 - parameters[YZ4] * t224
         - parameters[XZ4] * t234;
     const iiwa14_real_t t399 = (t289 - t377) * parameters[XY4];
+    /* link j5: what it passes on */
     const iiwa14_real_t t400 = t398 + t399 + (parameters[MX4] * t294 + parameters[MY4] * t284) + (t42 * t343
         - t39 * t353 + IIWA14_C(0.4) * t396);
-    const iiwa14_real_t t401 = t230 * (parameters[XX3] - parameters[ZZ3]);
+    const iiwa14_real_t t401 = t230 * (parameters[XX3] - parameters[ZZ3]); /* link j3: force and moment */
     const iiwa14_real_t t402 = parameters[YY3] * t232 + t401 + parameters[XY3] * t223
         + parameters[YZ3] * t216;
-    const iiwa14_real_t t403 = t205 * t205;
-    const iiwa14_real_t t404 = (t403 - t392) * parameters[XZ3];
+    const iiwa14_real_t t403 = t205 * t205; /* link j3: motion */
+    const iiwa14_real_t t404 = (t403 - t392) * parameters[XZ3]; /* link j3: force and moment */
     const iiwa14_real_t t405 = t278 * parameters[MX3];
+    /* link j4: what it passes on */
     const iiwa14_real_t t406 = t402 + t404 + (parameters[MZ3] * t283 + t405) + t400;
-    const iiwa14_real_t t407 = (t377 + t290) * parameters[MX4];
+    const iiwa14_real_t t407 = (t377 + t290) * parameters[MX4]; /* link j4: force and moment */
     const iiwa14_real_t t408 = parameters[M4] * t284 + (t407 + parameters[MY4] * t233
         + parameters[MZ4] * t224);
-    const iiwa14_real_t t409 = t351 + t340;
-    const iiwa14_real_t t410 = t409 * parameters[MZ5];
+    const iiwa14_real_t t409 = t351 + t340; /* link j6: motion */
+    const iiwa14_real_t t410 = t409 * parameters[MZ5]; /* link j5: force and moment */
     const iiwa14_real_t t411 = parameters[MX5] * t337 + parameters[MY5] * t242 - t410 - parameters[M5] * t295;
-    const iiwa14_real_t t412 = t291 * parameters[MY4];
+    const iiwa14_real_t t412 = t291 * parameters[MY4]; /* link j4: force and moment */
     const iiwa14_real_t t413 = parameters[M4] * t294 + (parameters[MZ4] * t234 - (parameters[MX4] * t375
         + t412));
+    /* link j4: what it passes on */
     const iiwa14_real_t t414 = t79 * (t413 + (t411 + (t22 * t356 + t18 * t362)));
-    const iiwa14_real_t t415 = (t391 + t392) * parameters[MX3];
+    const iiwa14_real_t t415 = (t391 + t392) * parameters[MX3]; /* link j3: force and moment */
     const iiwa14_real_t t416 = parameters[M3] * t283 + (t415 - parameters[MY3] * t216
         + parameters[MZ3] * t231);
-    const iiwa14_real_t t417 = t416 + (t81 * (t408 + t396) + t414);
-    const iiwa14_real_t t418 = t289 + t377;
-    const iiwa14_real_t t419 = t418 * parameters[MZ4];
+    const iiwa14_real_t t417 = t416 + (t81 * (t408 + t396) + t414); /* link j4: what it passes on */
+    const iiwa14_real_t t418 = t289 + t377; /* link j5: motion */
+    const iiwa14_real_t t419 = t418 * parameters[MZ4]; /* link j4: force and moment */
     const iiwa14_real_t t420 = parameters[M4] * t286 + (parameters[MY4] * t237 - parameters[MX4] * t374
         + t419);
-    const iiwa14_real_t t421 = (t403 + t392) * parameters[MY3];
+    const iiwa14_real_t t421 = (t403 + t392) * parameters[MY3]; /* link j3: force and moment */
     const iiwa14_real_t t422 = parameters[M3] * t286 - (parameters[MX3] * t389 + t421
         - parameters[MZ3] * t221);
-    const iiwa14_real_t t423 = t422 + (t420 + t372);
+    const iiwa14_real_t t423 = t422 + (t420 + t372); /* link j4: what it passes on */
+    /* link j3: what it passes on */
     const iiwa14_real_t t424 = t112 * t395 + t115 * t406 + IIWA14_C(0.42) * (t115 * t417 - t112 * t423);
-    const iiwa14_real_t t425 = t219 * (parameters[YY2] - parameters[ZZ2]);
+    const iiwa14_real_t t425 = t219 * (parameters[YY2] - parameters[ZZ2]); /* link j2: force and moment */
     const iiwa14_real_t t426 = t425 - t219 * parameters[XX2] + IIWA14_C(2.0) * t215 * parameters[XY2]
         + t218 * parameters[XZ2];
-    const iiwa14_real_t t427 = t206 * t206;
-    const iiwa14_real_t t428 = (t427 - t276) * parameters[YZ2];
+    const iiwa14_real_t t427 = t206 * t206; /* link j2: motion */
+    const iiwa14_real_t t428 = (t427 - t276) * parameters[YZ2]; /* link j2: force and moment */
     const iiwa14_real_t t429 = t277 * parameters[MZ2];
-    const iiwa14_real_t t430 = (t403 - t391) * parameters[XY3];
+    const iiwa14_real_t t430 = (t403 - t391) * parameters[XY3]; /* link j3: force and moment */
     const iiwa14_real_t t431 = t214 * (parameters[XX3] - parameters[YY3]);
     const iiwa14_real_t t432 = t215 * parameters[ZZ3] - t431 + parameters[YZ3] * t231
         + parameters[XZ3] * t221;
+    /* link j4: what it passes on */
     const iiwa14_real_t t433 = t432 - t430 - (parameters[MX3] * t286 + parameters[MY3] * t283) + (t79 * t379
         + t81 * t387);
-    const iiwa14_real_t t434 = t215 * (parameters[XX2] - parameters[ZZ2]);
+    const iiwa14_real_t t434 = t215 * (parameters[XX2] - parameters[ZZ2]); /* link j2: force and moment */
     const iiwa14_real_t t435 = t215 * parameters[YY2] - t434 + t220 * parameters[XY2]
         - t218 * parameters[YZ2];
     const iiwa14_real_t t436 = (t275 - t276) * parameters[XZ2];
     const iiwa14_real_t t437 = t280 * parameters[MZ2];
+    /* link j2: what it passes on */
     const iiwa14_real_t t438 = t167 * (t426 + t428 + t429 + t424) + t169 * (t435 - t436 + t437 + t433);
-    const iiwa14_real_t t439 = iiwa14_sign(dq[0]);
+    const iiwa14_real_t t439 = iiwa14_sign(dq[0]); /* joint j1: coulomb_friction */
     const iiwa14_real_t t440 = IIWA14_C(160.0) * (IIWA14_C(-160.0) * dq[0] * parameters[FV1]
         - t439 * parameters[FC1]) + t438;
-    const iiwa14_real_t t441 = iiwa14_sign(dq[6]);
+    const iiwa14_real_t t441 = iiwa14_sign(dq[6]); /* joint j7: coulomb_friction */
     const iiwa14_real_t t442 = IIWA14_C(160.0) * (IIWA14_C(160.0) * dq[6] * parameters[FV7]
         + t441 * parameters[FC7]) - t331;
     const iiwa14_real_t t443 = IIWA14_C(8.0) * input[6] - t442;
-    const iiwa14_real_t t444 = iiwa14_sign(dq[5]);
+    const iiwa14_real_t t444 = iiwa14_sign(dq[5]); /* joint j6: coulomb_friction */
     const iiwa14_real_t t445 = IIWA14_C(160.0) * (IIWA14_C(160.0) * dq[5] * parameters[FV6]
         + t444 * parameters[FC6]) + t348;
     const iiwa14_real_t t446 = IIWA14_C(8.0) * input[5] - t445 + t443 * t6;
     const iiwa14_real_t t447 = IIWA14_C(16.0) * input[0] + t440 + t443 * t196 + t446 * t197;
-    const iiwa14_real_t t448 = iiwa14_sign(dq[4]);
+    const iiwa14_real_t t448 = iiwa14_sign(dq[4]); /* joint j5: coulomb_friction */
     const iiwa14_real_t t449 = IIWA14_C(1.0e2) * (IIWA14_C(1.0e2) * dq[4] * parameters[FV5]
         + t448 * parameters[FC5]) - t383;
     const iiwa14_real_t t450 = IIWA14_C(8.0) * input[4] - t449 - t443 * t28 + t446 * t34;
-    const iiwa14_real_t t451 = iiwa14_sign(dq[3]);
+    const iiwa14_real_t t451 = iiwa14_sign(dq[3]); /* joint j4: coulomb_friction */
     const iiwa14_real_t t452 = IIWA14_C(160.0) * (IIWA14_C(160.0) * dq[3] * parameters[FV4]
         + t451 * parameters[FC4]) + t400;
     const iiwa14_real_t t453 = IIWA14_C(16.0) * input[3] - t452 - t443 * t60 - t446 * t64;
     const iiwa14_real_t t454 = t453 + t450 * t75;
-    const iiwa14_real_t t455 = iiwa14_sign(dq[2]);
+    const iiwa14_real_t t455 = iiwa14_sign(dq[2]); /* joint j3: coulomb_friction */
     const iiwa14_real_t t456 = IIWA14_C(160.0) * (IIWA14_C(-160.0) * dq[2] * parameters[FV3]
         - t455 * parameters[FC3]) + t433;
     const iiwa14_real_t t457 = IIWA14_C(16.0) * input[2] + t456 - t443 * t104 - t446 * t105;
     const iiwa14_real_t t458 = t457 - t450 * t106 - t454 * t96;
     const iiwa14_real_t t459 = t447 + t450 * t198 + t454 * t200 - t458 * t201;
+    /* link j3: what it passes on */
     const iiwa14_real_t t460 = t112 * t406 - t115 * t395 + IIWA14_C(0.42) * (t112 * t417 + t115 * t423);
+    /* link j2: force and moment */
     const iiwa14_real_t t461 = t218 * (parameters[XX2] - parameters[YY2]) + (t427 - t275) * parameters[XY2]
         + (t277 * parameters[MX2] + t280 * parameters[MY2]);
-    const iiwa14_real_t t462 = iiwa14_sign(dq[1]);
+    const iiwa14_real_t t462 = iiwa14_sign(dq[1]); /* joint j2: coulomb_friction */
     const iiwa14_real_t t463 = IIWA14_C(160.0) * (IIWA14_C(-160.0) * dq[1] * parameters[FV2]
         - t462 * parameters[FC2]) + (t461 + t460);
     const iiwa14_real_t t464 = IIWA14_C(16.0) * input[1] + t463 + t443 * t134 + t446 * t140;
@@ -788,14 +820,15 @@ int iiwa14_forward_dynamics_derivatives_standard(
     const iiwa14_real_t t484 = t262 * parameters[XZ7] + t257 * t483;
     const iiwa14_real_t t485 = parameters[YY7] - t482;
     const iiwa14_real_t t486 = t256 * parameters[YZ7] + t257 * t485;
+    /* link j7: inertia, momentum beyond */
     const iiwa14_real_t t487 = t2 * (t479 + t481) + t1 * (t484 - t486);
     const iiwa14_real_t t488 = t2 * t487;
-    const iiwa14_real_t t489 = IIWA14_C(-0.126) * t245;
-    const iiwa14_real_t t490 = t19 * t489;
+    const iiwa14_real_t t489 = IIWA14_C(-0.126) * t245; /* link j7: velocity of its origin */
+    const iiwa14_real_t t490 = t19 * t489; /* link j7: inertia, momentum beyond */
     const iiwa14_real_t t491 = t262 * parameters[MY7] - t256 * parameters[MX7];
     const iiwa14_real_t t492 = IIWA14_C(0.126) * t491;
-    const iiwa14_real_t t493 = IIWA14_C(0.126) * t252;
-    const iiwa14_real_t t494 = t3 * t493;
+    const iiwa14_real_t t493 = IIWA14_C(0.126) * t252; /* link j7: velocity of its origin */
+    const iiwa14_real_t t494 = t3 * t493; /* link j7: inertia, momentum beyond */
     const iiwa14_real_t t495 = t492 + (t494 - t490);
     const iiwa14_real_t t496 = t244 * parameters[XZ6];
     const iiwa14_real_t t497 = t245 * parameters[XY6];
@@ -817,142 +850,169 @@ int iiwa14_forward_dynamics_derivatives_standard(
     const iiwa14_real_t t513 = t256 * parameters[XY7] - t262 * t485;
     const iiwa14_real_t t514 = t509 - parameters[XX6];
     const iiwa14_real_t t515 = t252 * parameters[XZ6] - t245 * t514 + (t2 * t512 - t1 * t513);
+    /* link j6: inertia, momentum beyond */
     const iiwa14_real_t t516 = t18 * (t498 - t501) + t22 * (t511 - t515);
     const iiwa14_real_t t517 = t18 * t516;
     const iiwa14_real_t t518 = t212 * parameters[XZ5];
     const iiwa14_real_t t519 = t239 * parameters[XY5];
     const iiwa14_real_t t520 = t518 - t519 + (t501 + t517);
+    /* link j7: inertia, momentum beyond */
     const iiwa14_real_t t521 = t495 + (t479 - t488 - t494) - (t496 + t500);
     const iiwa14_real_t t522 = t211 * parameters[YZ5];
-    const iiwa14_real_t t523 = t519 + t522 + t521;
-    const iiwa14_real_t t524 = t1 * t487;
+    const iiwa14_real_t t523 = t519 + t522 + t521; /* link j6: inertia, momentum beyond */
+    const iiwa14_real_t t524 = t1 * t487; /* link j7: inertia, momentum beyond */
     const iiwa14_real_t t525 = parameters[ZZ6] - t509;
     const iiwa14_real_t t526 = t244 * t525 - t245 * parameters[YZ6] + (t486 + t524 + t3 * t489);
     const iiwa14_real_t t527 = t245 * parameters[XZ6] + t252 * t525 + (t1 * t512 + t2 * t513);
     const iiwa14_real_t t528 = IIWA14_C(-0.5) * (parameters[ZZ5] + (parameters[XX5] + parameters[YY5]));
     const iiwa14_real_t t529 = parameters[YY5] + t528;
+    /* link j6: inertia, momentum beyond */
     const iiwa14_real_t t530 = t212 * parameters[YZ5] - t239 * t529 + (t18 * t526 - t22 * t527);
+    /* link j7: inertia, momentum beyond */
     const iiwa14_real_t t531 = t244 * t514 - t252 * parameters[XY6] + (t524 - t484 - t19 * t493);
     const iiwa14_real_t t532 = t1 * t505 - t2 * t506;
     const iiwa14_real_t t533 = t1 * t503 + t2 * t504 + (IIWA14_C(0.126) * t532 + t46 * t493);
     const iiwa14_real_t t534 = t533 - (t244 * parameters[XY6] + t252 * t510);
     const iiwa14_real_t t535 = parameters[XX5] + t528;
+    /* link j6: inertia, momentum beyond */
     const iiwa14_real_t t536 = t211 * parameters[XZ5] + t239 * t535 + (t18 * t531 - t22 * t534);
+    /* link j5: inertia, momentum beyond */
     const iiwa14_real_t t537 = t39 * (t523 - t520) + t42 * (t530 + t536);
     const iiwa14_real_t t538 = t39 * t537;
-    const iiwa14_real_t t539 = IIWA14_C(-0.4) * t210;
-    const iiwa14_real_t t540 = t90 * t539;
+    const iiwa14_real_t t539 = IIWA14_C(-0.4) * t210; /* link j5: velocity of its origin */
+    const iiwa14_real_t t540 = t90 * t539; /* link j5: inertia, momentum beyond */
+    /* link j7: inertia, momentum beyond */
     const iiwa14_real_t t541 = t245 * parameters[MY6] - t244 * parameters[MZ6] + (parameters[M7] * t489
         - t507);
     const iiwa14_real_t t542 = t491 - (t245 * parameters[MX6] + t252 * parameters[MZ6]);
+    /* link j6: inertia, momentum beyond */
     const iiwa14_real_t t543 = t22 * t541 + t18 * t542 - (t211 * parameters[MY5] + t212 * parameters[MX5]);
-    const iiwa14_real_t t544 = IIWA14_C(0.4) * t543;
-    const iiwa14_real_t t545 = IIWA14_C(0.4) * t208;
-    const iiwa14_real_t t546 = t71 * t545;
+    const iiwa14_real_t t544 = IIWA14_C(0.4) * t543; /* link j5: inertia, momentum beyond */
+    const iiwa14_real_t t545 = IIWA14_C(0.4) * t208; /* link j5: velocity of its origin */
+    const iiwa14_real_t t546 = t71 * t545; /* link j5: inertia, momentum beyond */
     const iiwa14_real_t t547 = t544 + (t546 - t540);
     const iiwa14_real_t t548 = t228 * parameters[XZ4];
     const iiwa14_real_t t549 = t210 * parameters[XY4];
     const iiwa14_real_t t550 = t548 + t549 + (t547 + (t523 - t538 + t540));
-    const iiwa14_real_t t551 = t518 + t522 + (t517 - t498);
+    const iiwa14_real_t t551 = t518 + t522 + (t517 - t498); /* link j6: inertia, momentum beyond */
     const iiwa14_real_t t552 = t208 * parameters[YZ4];
-    const iiwa14_real_t t553 = t549 - t552 + (t551 + t544 - t547);
-    const iiwa14_real_t t554 = t22 * t516;
+    const iiwa14_real_t t553 = t549 - t552 + (t551 + t544 - t547); /* link j5: inertia, momentum beyond */
+    const iiwa14_real_t t554 = t22 * t516; /* link j6: inertia, momentum beyond */
     const iiwa14_real_t t555 = parameters[ZZ5] + t528;
     const iiwa14_real_t t556 = t212 * t555 - t239 * parameters[YZ5] + (t511 - t554);
     const iiwa14_real_t t557 = t22 * t531 + t18 * t534 - (t239 * parameters[XZ5] + t211 * t555);
     const iiwa14_real_t t558 = t239 * parameters[MY5] - t212 * parameters[MZ5] + (t18 * t541 - t22 * t542);
+    /* link j7: inertia, momentum beyond */
     const iiwa14_real_t t559 = t532 + parameters[M7] * t493 - (t252 * parameters[MY6]
         + t244 * parameters[MX6]);
+    /* link j6: inertia, momentum beyond */
     const iiwa14_real_t t560 = t239 * parameters[MX5] + t211 * parameters[MZ5] + t559;
-    const iiwa14_real_t t561 = t39 * t558 + t42 * t560;
+    const iiwa14_real_t t561 = t39 * t558 + t42 * t560; /* link j5: inertia, momentum beyond */
     const iiwa14_real_t t562 = t39 * t556 + t42 * t557 + (IIWA14_C(0.4) * t561 + t119 * t539);
     const iiwa14_real_t t563 = IIWA14_C(0.5) * (parameters[ZZ4] + (parameters[XX4] + parameters[YY4]));
     const iiwa14_real_t t564 = t563 - parameters[YY4];
     const iiwa14_real_t t565 = t228 * parameters[YZ4] - t210 * t564 + t562;
+    /* link j6: inertia, momentum beyond */
     const iiwa14_real_t t566 = t211 * parameters[XY5] + t212 * t535 + (t515 + t554);
     const iiwa14_real_t t567 = t212 * parameters[XY5] + t211 * t529 + (t22 * t526 + t18 * t527);
     const iiwa14_real_t t568 = t563 - parameters[XX4];
+    /* link j5: inertia, momentum beyond */
     const iiwa14_real_t t569 = t39 * t566 - t42 * t567 - (t208 * parameters[XZ4] + t210 * t568);
+    /* link j4: inertia, momentum beyond */
     const iiwa14_real_t t570 = t81 * (t550 + t553) + t79 * (t569 - t565);
     const iiwa14_real_t t571 = t81 * t570;
     const iiwa14_real_t t572 = t209 * parameters[XZ3];
     const iiwa14_real_t t573 = t207 * parameters[XY3];
     const iiwa14_real_t t574 = t572 - t573 + (t571 - t553);
+    /* link j5: inertia, momentum beyond */
     const iiwa14_real_t t575 = t547 + (t520 + t538 - t546) - (t548 + t552);
     const iiwa14_real_t t576 = t205 * parameters[YZ3];
-    const iiwa14_real_t t577 = t573 + t576 + t575;
-    const iiwa14_real_t t578 = t42 * t537;
+    const iiwa14_real_t t577 = t573 + t576 + t575; /* link j4: inertia, momentum beyond */
+    const iiwa14_real_t t578 = t42 * t537; /* link j5: inertia, momentum beyond */
     const iiwa14_real_t t579 = parameters[ZZ4] - t563;
     const iiwa14_real_t t580 = t210 * parameters[YZ4] + t228 * t579 + (t578 - t530 - t71 * t539);
     const iiwa14_real_t t581 = t208 * t579 - t210 * parameters[XZ4] + (t42 * t566 + t39 * t567);
     const iiwa14_real_t t582 = IIWA14_C(0.5) * (parameters[ZZ3] + (parameters[XX3] + parameters[YY3]));
     const iiwa14_real_t t583 = parameters[YY3] - t582;
+    /* link j4: inertia, momentum beyond */
     const iiwa14_real_t t584 = t209 * parameters[YZ3] - t207 * t583 + (t79 * t581 - t81 * t580);
+    /* link j5: inertia, momentum beyond */
     const iiwa14_real_t t585 = t208 * parameters[XY4] - t228 * t568 + (t536 - t578 - t90 * t545);
     const iiwa14_real_t t586 = t39 * t560 - t42 * t558;
     const iiwa14_real_t t587 = t39 * t557 - t42 * t556 + (IIWA14_C(0.4) * t586 + t119 * t545);
     const iiwa14_real_t t588 = t228 * parameters[XY4] - t208 * t564 - t587;
     const iiwa14_real_t t589 = parameters[XX3] - t582;
+    /* link j4: inertia, momentum beyond */
     const iiwa14_real_t t590 = t205 * parameters[XZ3] + t207 * t589 + (t81 * t585 - t79 * t588);
+    /* link j3: inertia, momentum beyond */
     const iiwa14_real_t t591 = t112 * (t577 - t574) + t115 * (t584 + t590);
     const iiwa14_real_t t592 = t112 * t591;
-    const iiwa14_real_t t593 = IIWA14_C(-0.42) * dq[1];
-    const iiwa14_real_t t594 = t184 * t593;
+    const iiwa14_real_t t593 = IIWA14_C(-0.42) * dq[1]; /* link j3: velocity of its origin */
+    const iiwa14_real_t t594 = t184 * t593; /* link j3: inertia, momentum beyond */
+    /* link j5: inertia, momentum beyond */
     const iiwa14_real_t t595 = t561 + t51 * t539 - (t228 * parameters[MZ4] + t210 * parameters[MY4]);
     const iiwa14_real_t t596 = t208 * parameters[MZ4] - t210 * parameters[MX4] + t543;
+    /* link j4: inertia, momentum beyond */
     const iiwa14_real_t t597 = t81 * t596 - t79 * t595 - (t205 * parameters[MY3] + t209 * parameters[MX3]);
-    const iiwa14_real_t t598 = IIWA14_C(-0.42) * t597;
-    const iiwa14_real_t t599 = IIWA14_C(-0.42) * t204;
-    const iiwa14_real_t t600 = t158 * t599;
+    const iiwa14_real_t t598 = IIWA14_C(-0.42) * t597; /* link j3: inertia, momentum beyond */
+    const iiwa14_real_t t599 = IIWA14_C(-0.42) * t204; /* link j3: velocity of its origin */
+    const iiwa14_real_t t600 = t158 * t599; /* link j3: inertia, momentum beyond */
     const iiwa14_real_t t601 = t598 + (t594 - t600);
     const iiwa14_real_t t602 = t206 * parameters[XZ2];
     const iiwa14_real_t t603 = dq[1] * parameters[XY2];
     const iiwa14_real_t t604 = t602 + t603 + (t601 + (t592 - t577 - t594));
-    const iiwa14_real_t t605 = t572 + t576 + (t571 - t550);
+    const iiwa14_real_t t605 = t572 + t576 + (t571 - t550); /* link j4: inertia, momentum beyond */
     const iiwa14_real_t t606 = t204 * parameters[YZ2];
-    const iiwa14_real_t t607 = t601 + (t605 - t598) - (t603 + t606);
-    const iiwa14_real_t t608 = t79 * t570;
+    const iiwa14_real_t t607 = t601 + (t605 - t598) - (t603 + t606); /* link j3: inertia, momentum beyond */
+    const iiwa14_real_t t608 = t79 * t570; /* link j4: inertia, momentum beyond */
     const iiwa14_real_t t609 = parameters[ZZ3] - t582;
     const iiwa14_real_t t610 = t209 * t609 - t207 * parameters[YZ3] + (t565 + t608);
     const iiwa14_real_t t611 = t207 * parameters[XZ3] + t205 * t609 + (t79 * t585 + t81 * t588);
     const iiwa14_real_t t612 = t207 * parameters[MY3] - t209 * parameters[MZ3] + (t81 * t595 + t79 * t596);
+    /* link j5: inertia, momentum beyond */
     const iiwa14_real_t t613 = t208 * parameters[MY4] + t228 * parameters[MX4] + (t586 + t51 * t545);
+    /* link j4: inertia, momentum beyond */
     const iiwa14_real_t t614 = t207 * parameters[MX3] + t205 * parameters[MZ3] + t613;
-    const iiwa14_real_t t615 = t125 - t122;
+    const iiwa14_real_t t615 = t125 - t122; /* link j3: inertia of it and all beyond */
+    /* link j3: inertia, momentum beyond */
     const iiwa14_real_t t616 = IIWA14_C(0.42) * (t112 * t612 + t115 * t614) - t615 * t593;
     const iiwa14_real_t t617 = IIWA14_C(0.5) * (parameters[ZZ2] + (parameters[XX2] + parameters[YY2]));
     const iiwa14_real_t t618 = parameters[YY2] - t617;
     const iiwa14_real_t t619 = t206 * parameters[YZ2] + dq[1] * t618 + (t112 * t610 - t115 * t611 + t616);
+    /* link j4: inertia, momentum beyond */
     const iiwa14_real_t t620 = t205 * parameters[XY3] + t209 * t589 - (t608 - t569);
     const iiwa14_real_t t621 = t209 * parameters[XY3] + t205 * t583 + (t79 * t580 + t81 * t581);
     const iiwa14_real_t t622 = t617 - parameters[XX2];
+    /* link j3: inertia, momentum beyond */
     const iiwa14_real_t t623 = dq[1] * t622 - t204 * parameters[XZ2] + (t115 * t621 - t112 * t620);
+    /* link j2: inertia, momentum beyond */
     const iiwa14_real_t t624 = t169 * (t169 * (t607 - t604) + t167 * (t619 + t623));
     const iiwa14_real_t t625 = IIWA14_C(-1.6e3) * parameters[FV1] + IIWA14_C(0.125) * (t604 + t624);
     const iiwa14_real_t t626 = iiwa14_bounded(IIWA14_C(16.0) * t466);
     const iiwa14_real_t t627 = t190 * t466;
     const iiwa14_real_t t628 = iiwa14_bounded(IIWA14_C(-16.0) * t627);
-    const iiwa14_real_t t629 = t115 * t591;
+    const iiwa14_real_t t629 = t115 * t591; /* link j3: inertia, momentum beyond */
     const iiwa14_real_t t630 = t204 * parameters[XY2] + t206 * t622 + (t629 - t590 - t184 * t599);
-    const iiwa14_real_t t631 = IIWA14_C(2.0) * t630;
+    const iiwa14_real_t t631 = IIWA14_C(2.0) * t630; /* link j2: derivatives */
+    /* link j3: inertia, momentum beyond */
     const iiwa14_real_t t632 = IIWA14_C(0.42) * (t112 * t614 - t115 * t612) + t615 * t599;
     const iiwa14_real_t t633 = t206 * parameters[XY2] - t204 * t618 + (t632 - (t115 * t610 + t112 * t611));
-    const iiwa14_real_t t634 = IIWA14_C(2.0) * t633;
+    const iiwa14_real_t t634 = IIWA14_C(2.0) * t633; /* link j2: derivatives */
     const iiwa14_real_t t635 = IIWA14_C(0.0625) * (t167 * t631 - t169 * t634);
     const iiwa14_real_t t636 = t466 * (t201 + t163 * t190);
     const iiwa14_real_t t637 = iiwa14_bounded(IIWA14_C(-16.0) * t636);
-    const iiwa14_real_t t638 = IIWA14_C(-2.0) * t620;
+    const iiwa14_real_t t638 = IIWA14_C(-2.0) * t620; /* link j3: derivatives */
     const iiwa14_real_t t639 = IIWA14_C(-2.0) * t621;
     const iiwa14_real_t t640 = t115 * t639 - t112 * t638;
     const iiwa14_real_t t641 = IIWA14_C(2.0) * t605;
-    const iiwa14_real_t t642 = IIWA14_C(-0.84) * t204;
+    const iiwa14_real_t t642 = IIWA14_C(-0.84) * t204; /* link j7: derivatives */
     const iiwa14_real_t t643 = IIWA14_C(-0.84) * dq[1];
-    const iiwa14_real_t t644 = t641 - (t158 * t642 - t184 * t643);
+    const iiwa14_real_t t644 = t641 - (t158 * t642 - t184 * t643); /* link j3: derivatives */
     const iiwa14_real_t t645 = IIWA14_C(0.0625) * (t167 * t640 - t169 * t644);
     const iiwa14_real_t t646 = t151 - t96 * t163;
     const iiwa14_real_t t647 = t466 * (t200 + t96 * t201 - t190 * t646);
     const iiwa14_real_t t648 = iiwa14_bounded(IIWA14_C(16.0) * t647);
-    const iiwa14_real_t t649 = IIWA14_C(2.0) * t585;
+    const iiwa14_real_t t649 = IIWA14_C(2.0) * t585; /* link j4: derivatives */
     const iiwa14_real_t t650 = IIWA14_C(2.0) * t588;
     const iiwa14_real_t t651 = t81 * t649 - t79 * t650;
     const iiwa14_real_t t652 = IIWA14_C(2.0) * t575;
@@ -966,17 +1026,17 @@ int iiwa14_forward_dynamics_derivatives_standard(
     const iiwa14_real_t t660 = t198 + t75 * t200 + t201 * t658 - t190 * t659;
     const iiwa14_real_t t661 = t466 * t660;
     const iiwa14_real_t t662 = iiwa14_bounded(IIWA14_C(8.0) * t661);
-    const iiwa14_real_t t663 = IIWA14_C(2.0) * t566;
+    const iiwa14_real_t t663 = IIWA14_C(2.0) * t566; /* link j5: derivatives */
     const iiwa14_real_t t664 = IIWA14_C(2.0) * t567;
     const iiwa14_real_t t665 = t39 * t663 - t42 * t664;
     const iiwa14_real_t t666 = IIWA14_C(2.0) * t551;
-    const iiwa14_real_t t667 = IIWA14_C(-0.8) * t208;
+    const iiwa14_real_t t667 = IIWA14_C(-0.8) * t208; /* link j7: derivatives */
     const iiwa14_real_t t668 = IIWA14_C(0.8) * t210;
-    const iiwa14_real_t t669 = t666 + (t71 * t667 - t90 * t668);
+    const iiwa14_real_t t669 = t666 + (t71 * t667 - t90 * t668); /* link j5: derivatives */
     const iiwa14_real_t t670 = t81 * t665 - t79 * t669;
     const iiwa14_real_t t671 = t42 * t663 + t39 * t664;
-    const iiwa14_real_t t672 = t79 * t71;
-    const iiwa14_real_t t673 = t115 * t671 - t112 * t670 + t672 * t642;
+    const iiwa14_real_t t672 = t79 * t71; /* link j5: column of the mass matrix */
+    const iiwa14_real_t t673 = t115 * t671 - t112 * t670 + t672 * t642; /* link j5: derivatives */
     const iiwa14_real_t t674 = t79 * t665 + t81 * t669;
     const iiwa14_real_t t675 = t674 - (t177 * t643 - t143 * t642);
     const iiwa14_real_t t676 = IIWA14_C(0.125) * (t167 * t673 + t169 * t675);
@@ -986,7 +1046,7 @@ int iiwa14_forward_dynamics_derivatives_standard(
     const iiwa14_real_t t680 = t197 + t34 * t198 + t200 * t677 + t201 * t678;
     const iiwa14_real_t t681 = t466 * (t680 - t190 * t679);
     const iiwa14_real_t t682 = iiwa14_bounded(IIWA14_C(8.0) * t681);
-    const iiwa14_real_t t683 = IIWA14_C(-2.0) * t531;
+    const iiwa14_real_t t683 = IIWA14_C(-2.0) * t531; /* link j6: derivatives */
     const iiwa14_real_t t684 = IIWA14_C(2.0) * t534;
     const iiwa14_real_t t685 = t18 * t683 + t22 * t684;
     const iiwa14_real_t t686 = IIWA14_C(-2.0) * t521;
@@ -995,8 +1055,8 @@ int iiwa14_forward_dynamics_derivatives_standard(
     const iiwa14_real_t t689 = t688 - (t61 * t667 + t86 * t668);
     const iiwa14_real_t t690 = t81 * t687 - t79 * t689;
     const iiwa14_real_t t691 = t42 * t685 + t39 * t686 - t69 * t668;
-    const iiwa14_real_t t692 = t79 * t61 - t81 * t69;
-    const iiwa14_real_t t693 = t115 * t691 - t112 * t690 - t692 * t642;
+    const iiwa14_real_t t692 = t79 * t61 - t81 * t69; /* link j6: column of the mass matrix */
+    const iiwa14_real_t t693 = t115 * t691 - t112 * t690 - t692 * t642; /* link j6: derivatives */
     const iiwa14_real_t t694 = t79 * t687 + t81 * t689;
     const iiwa14_real_t t695 = t694 + (t137 * t642 + t173 * t643);
     const iiwa14_real_t t696 = IIWA14_C(0.125) * (t167 * t693 + t169 * t695);
@@ -1008,7 +1068,7 @@ int iiwa14_forward_dynamics_derivatives_standard(
     const iiwa14_real_t t702 = t196 + t6 * t197 + t198 * t697 + t200 * t698;
     const iiwa14_real_t t703 = t466 * (t702 + t201 * t699 - t190 * t701);
     const iiwa14_real_t t704 = IIWA14_C(8.0) * t703;
-    const iiwa14_real_t t705 = IIWA14_C(2.0) * t512;
+    const iiwa14_real_t t705 = IIWA14_C(2.0) * t512; /* link j7: derivatives */
     const iiwa14_real_t t706 = IIWA14_C(2.0) * t513;
     const iiwa14_real_t t707 = t2 * t705 - t1 * t706;
     const iiwa14_real_t t708 = IIWA14_C(2.0) * t499;
@@ -1020,8 +1080,8 @@ int iiwa14_forward_dynamics_derivatives_standard(
     const iiwa14_real_t t714 = t713 + (t58 * t667 + t83 * t668);
     const iiwa14_real_t t715 = t81 * t712 - t79 * t714;
     const iiwa14_real_t t716 = t42 * t710 + t39 * t711 + t130 * t668;
-    const iiwa14_real_t t717 = t81 * t130 - t79 * t58;
-    const iiwa14_real_t t718 = t115 * t716 - t112 * t715 - t717 * t642;
+    const iiwa14_real_t t717 = t81 * t130 - t79 * t58; /* link j7: column of the mass matrix */
+    const iiwa14_real_t t718 = t115 * t716 - t112 * t715 - t717 * t642; /* link j7: derivatives */
     const iiwa14_real_t t719 = t79 * t712 + t81 * t714;
     const iiwa14_real_t t720 = t719 - (t170 * t643 - t132 * t642);
     const iiwa14_real_t t721 = IIWA14_C(0.125) * (t167 * t718 + t169 * t720);
@@ -1264,11 +1324,11 @@ int iiwa14_forward_dynamics_derivatives_standard(
     const iiwa14_real_t t918 = t112 * t902 + t115 * t907 + IIWA14_C(0.42) * (t115 * t914 + t112 * t917);
     const iiwa14_real_t t919 = t425 - parameters[XX2] * t793 + parameters[XY2] * (t215 + t800)
         + parameters[XZ2] * (t218 + t468);
-    const iiwa14_real_t t920 = t275 + t427;
-    const iiwa14_real_t t921 = IIWA14_C(-2.0) * t206;
+    const iiwa14_real_t t920 = t275 + t427; /* link j3: motion */
+    const iiwa14_real_t t921 = IIWA14_C(-2.0) * t206; /* link j2: derivatives */
     const iiwa14_real_t t922 = IIWA14_C(2.0) * t204;
     const iiwa14_real_t t923 = t192 * t792 - t193 * t799 - t920 * t168 - (t623 * t921 + t607 * t922);
-    const iiwa14_real_t t924 = t158 - parameters[MZ2];
+    const iiwa14_real_t t924 = t158 - parameters[MZ2]; /* link j3: inertia of it and all beyond */
     const iiwa14_real_t t925 = t429 + (t428 + t919) + t918 + (t277 * t924 + t923);
     const iiwa14_real_t t926 = t431 - parameters[ZZ3] * t801 - parameters[YZ3] * t795
         - parameters[XZ3] * t803;
@@ -1313,27 +1373,37 @@ int iiwa14_forward_dynamics_derivatives_standard(
     const iiwa14_real_t t957 = t782 * t931 - t783 * t934 - t784 * t936 + t785 * t938;
     const iiwa14_real_t t958 = t957 + t769 * t941 + t780 * t943 + t789 * t945;
     ddq_by_q[43] = t958;
+    /* link j2: derivatives */
     const iiwa14_real_t t959 = IIWA14_C(2.0) * (t602 - t606 + (t574 + t592 - t600 - t601));
     const iiwa14_real_t t960 = IIWA14_C(0.0625) * (t959 + IIWA14_C(2.0) * (t206 * t166 + t204 * t168));
     const iiwa14_real_t t961 = IIWA14_C(1.6e3) * parameters[FV2] + t960;
     const iiwa14_real_t t962 = parameters[ZZ2] - t617;
+    /* link j3: inertia, momentum beyond */
     const iiwa14_real_t t963 = t584 - t629 - t158 * t593 - (dq[1] * parameters[YZ2] + t206 * t962);
+    /* link j2: derivatives */
     const iiwa14_real_t t964 = t167 * (IIWA14_C(2.0) * t963 + (t193 * t922 - t191 * t921));
+    /* link j3: inertia, momentum beyond */
     const iiwa14_real_t t965 = dq[1] * parameters[XZ2] + t204 * t962 + (t115 * t620 + t112 * t621);
+    /* link j2: derivatives */
     const iiwa14_real_t t966 = t169 * (IIWA14_C(2.0) * t965 + (t193 * t921 + t192 * t922));
     const iiwa14_real_t t967 = IIWA14_C(0.0625) * (t964 + t966);
+    /* link j3: derivatives */
     const iiwa14_real_t t968 = t115 * t638 + t112 * t639 + IIWA14_C(2.0) * (t206 * t185 - t204 * t102);
     const iiwa14_real_t t969 = IIWA14_C(0.0625) * t968;
+    /* link j4: derivatives */
     const iiwa14_real_t t970 = t115 * t651 + t112 * t652 - t156 * t643 + IIWA14_C(2.0) * (t206 * t181
         + t204 * t82);
     const iiwa14_real_t t971 = IIWA14_C(0.0625) * t970;
     const iiwa14_real_t t972 = t967 * t626 - t961 * t628 - t969 * t637 + t971 * t648;
+    /* link j5: derivatives */
     const iiwa14_real_t t973 = t115 * t670 + t112 * t671 + t672 * t643 + IIWA14_C(2.0) * (t206 * t178
         + t204 * t92);
     const iiwa14_real_t t974 = IIWA14_C(0.125) * t973;
+    /* link j6: derivatives */
     const iiwa14_real_t t975 = t115 * t690 + t112 * t691 - t692 * t643 + IIWA14_C(2.0) * (t206 * t174
         - t204 * t88);
     const iiwa14_real_t t976 = IIWA14_C(0.125) * t975;
+    /* link j7: derivatives */
     const iiwa14_real_t t977 = t115 * t715 + t112 * t716 - t717 * t643 + IIWA14_C(2.0) * (t206 * t171
         + t204 * t85);
     const iiwa14_real_t t978 = IIWA14_C(0.125) * t977;
@@ -1364,8 +1434,8 @@ int iiwa14_forward_dynamics_derivatives_standard(
     ddq_by_input[29] = t758;
     ddq_by_input[36] = t772;
     ddq_by_input[43] = t783;
-    const iiwa14_real_t t992 = t403 + t391;
-    const iiwa14_real_t t993 = IIWA14_C(2.0) * t209;
+    const iiwa14_real_t t992 = t403 + t391; /* link j4: motion */
+    const iiwa14_real_t t993 = IIWA14_C(2.0) * t209; /* link j3: derivatives */
     const iiwa14_real_t t994 = IIWA14_C(2.0) * t205;
     const iiwa14_real_t t995 = t574 * t993 + t584 * t994 + (t992 * t152 + (t114 * t803 - t110 * t795));
     const iiwa14_real_t t996 = t907 + (t995 - t122 * t835);
@@ -1455,7 +1525,7 @@ int iiwa14_forward_dynamics_derivatives_standard(
     ddq_by_input[30] = t759;
     ddq_by_input[37] = t773;
     ddq_by_input[44] = t784;
-    const iiwa14_real_t t1062 = IIWA14_C(2.0) * t228;
+    const iiwa14_real_t t1062 = IIWA14_C(2.0) * t228; /* link j4: derivatives */
     const iiwa14_real_t t1063 = IIWA14_C(-2.0) * t208;
     const iiwa14_real_t t1064 = t569 * t1062 - t553 * t1063 + (t418 * t80 - (t99 * t813 + t98 * t806));
     const iiwa14_real_t t1065 = t1064 - t154 * t841 - t895;
@@ -1549,7 +1619,7 @@ int iiwa14_forward_dynamics_derivatives_standard(
     ddq_by_input[31] = t760;
     ddq_by_input[38] = t774;
     ddq_by_input[45] = t785;
-    const iiwa14_real_t t1134 = IIWA14_C(2.0) * t212;
+    const iiwa14_real_t t1134 = IIWA14_C(2.0) * t212; /* link j5: derivatives */
     const iiwa14_real_t t1135 = IIWA14_C(2.0) * t211;
     const iiwa14_real_t t1136 = t520 * t1134 + t530 * t1135 + (t409 * t65 + (t41 * t817 - t37 * t809));
     const iiwa14_real_t t1137 = t880 + (t1136 + t49 * t840);
@@ -1652,7 +1722,7 @@ int iiwa14_forward_dynamics_derivatives_standard(
     ddq_by_input[32] = t763;
     ddq_by_input[39] = t766;
     ddq_by_input[46] = t769;
-    const iiwa14_real_t t1216 = IIWA14_C(2.0) * t244;
+    const iiwa14_real_t t1216 = IIWA14_C(2.0) * t244; /* link j6: derivatives */
     const iiwa14_real_t t1217 = IIWA14_C(2.0) * t252;
     const iiwa14_real_t t1218 = t515 * t1216 + t501 * t1217 - (t366 * t29 + (t21 * t828 - t17 * t820));
     const iiwa14_real_t t1219 = t868 + (t1218 + t67 * t849);
@@ -1762,7 +1832,7 @@ int iiwa14_forward_dynamics_derivatives_standard(
     ddq_by_input[33] = t766;
     ddq_by_input[40] = t777;
     ddq_by_input[47] = t780;
-    const iiwa14_real_t t1304 = IIWA14_C(-2.0) * t256;
+    const iiwa14_real_t t1304 = IIWA14_C(-2.0) * t256; /* link j7: derivatives */
     const iiwa14_real_t t1305 = IIWA14_C(2.0) * t262;
     const iiwa14_real_t t1306 = t479 * t1304 + t486 * t1305 + (t359 * parameters[XZ7]
         + (parameters[XX7] * t825 + parameters[XY7] * t823));

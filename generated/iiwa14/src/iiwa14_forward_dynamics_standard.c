@@ -6,7 +6,7 @@
  * Arm iiwa14, description 4f01a5afe35e97fd.
  * SPDX-License-Identifier: 0BSD
  *
- * Operations: 1295 (683 mul, 612 add, 0 neg), 7 div, 12 trig, 7 other.
+ * Operations: 1295 (683 mul, 612 add, 0 neg), 7 div, 12 trig, 7 other calls (sign, select and the like).
  *
  * @param[in]   q           [7]   [rad]      joint coordinates; norm at most 10000
  * @param[in]   dq          [7]   [rad/s]    joint velocities; norm at most 100000
@@ -121,11 +121,11 @@
  */
 #include "iiwa14_private.h"
 
-#if IIWA14_GENERATION != 0x27C72E36UL
+#if IIWA14_GENERATION != 0x1E31C9F2UL
 #error "iiwa14.h and iiwa14_forward_dynamics_standard.c are of different generations: generate the arm again"
 #endif
 
-int iiwa14_forward_dynamics_standard(
+iiwa14_status_t iiwa14_forward_dynamics_standard(
     const iiwa14_real_t q[IIWA14_N_JOINTS],
     const iiwa14_real_t dq[IIWA14_N_JOINTS],
     const iiwa14_real_t input[IIWA14_N_JOINTS],
@@ -137,7 +137,7 @@ int iiwa14_forward_dynamics_standard(
         XX5, XY5, XZ5, YY5, YZ5, ZZ5, MX5, MY5, MZ5, M5, XX6, XY6, XZ6, YY6, YZ6, ZZ6, MX6, MY6, MZ6, M6, XX7,
         XY7, XZ7, YY7, YZ7, ZZ7, MX7, MY7, MZ7, M7, FV1, FC1, IA1, FV2, FC2, IA2, FV3, FC3, IA3, FV4, FC4,
         IA4, FV5, FC5, IA5, FV6, FC6, IA6, FV7, FC7, IA7 };
-    int status = IIWA14_STATUS_OK;
+    iiwa14_status_t status = IIWA14_STATUS_OK;
 
     if (!iiwa14_within_joints(q, IIWA14_C(1.0e8))
         || !iiwa14_within_joints(dq, IIWA14_C(1.0e10))
@@ -167,11 +167,12 @@ int iiwa14_forward_dynamics_standard(
         iiwa14_zero(out, 7);
         return IIWA14_STATUS_PIVOT;
     }
+    /* link j7: column of the mass matrix */
     const iiwa14_real_t t3 = t2 * parameters[MY7] + t1 * parameters[MX7];
     const iiwa14_real_t t4 = t1 * parameters[XZ7] + t2 * parameters[YZ7] + IIWA14_C(-0.126) * t3;
     const iiwa14_real_t t5 = IIWA14_C(-1.0) / t0;
     const iiwa14_real_t t6 = t4 * t5;
-    const iiwa14_real_t t7 = parameters[YY7] - parameters[XX7];
+    const iiwa14_real_t t7 = parameters[YY7] - parameters[XX7]; /* link j7: inertia of it and all beyond */
     const iiwa14_real_t t8 = t2 * t7 + parameters[XY7] * (IIWA14_C(2.0) * t1);
     const iiwa14_real_t t9 = t2 * t8;
     const iiwa14_real_t t10 = IIWA14_C(0.126) * parameters[M7];
@@ -190,18 +191,20 @@ int iiwa14_forward_dynamics_standard(
     }
     const iiwa14_real_t t16 = parameters[XX6] + (parameters[YY7] - t9 + t11);
     const iiwa14_real_t t17 = parameters[YY6] + parameters[ZZ7];
+    /* link j7: column of the mass matrix */
     const iiwa14_real_t t19 = t2 * parameters[MX7] - t1 * parameters[MY7];
     const iiwa14_real_t t20 = t1 * parameters[YZ7] - t2 * parameters[XZ7] + IIWA14_C(0.126) * t19;
-    const iiwa14_real_t t21 = parameters[XY6] + t20;
+    const iiwa14_real_t t21 = parameters[XY6] + t20; /* link j7: inertia of it and all beyond */
+    /* link j6: inertia of it and all beyond */
     const iiwa14_real_t t23 = t18 * (t16 - t17) + t21 * (IIWA14_C(-2.0) * t22);
     const iiwa14_real_t t24 = t18 * t23;
     const iiwa14_real_t t25 = parameters[ZZ5] + (t16 - t24);
     const iiwa14_real_t t26 = t25 + IIWA14_C(1.0e4) * parameters[IA5];
-    const iiwa14_real_t t27 = t22 * t20 + t18 * parameters[ZZ7];
+    const iiwa14_real_t t27 = t22 * t20 + t18 * parameters[ZZ7]; /* link j7: column of the mass matrix */
     const iiwa14_real_t t28 = t27 * t5;
-    const iiwa14_real_t t29 = t4 - parameters[YZ6];
+    const iiwa14_real_t t29 = t4 - parameters[YZ6]; /* link j7: inertia of it and all beyond */
     const iiwa14_real_t t30 = t1 * t8 - parameters[XY7] - parameters[XZ6];
-    const iiwa14_real_t t31 = t22 * t30 + t18 * t29;
+    const iiwa14_real_t t31 = t22 * t30 + t18 * t29; /* link j6: column of the mass matrix */
     const iiwa14_real_t t32 = t31 + t27 * t6;
     const iiwa14_real_t t33 = IIWA14_C(-1.0) / t14;
     const iiwa14_real_t t34 = t32 * t33;
@@ -215,36 +218,37 @@ int iiwa14_forward_dynamics_standard(
         iiwa14_zero(out, 7);
         return IIWA14_STATUS_PIVOT;
     }
-    const iiwa14_real_t t37 = parameters[XX5] + (t17 + t24);
+    const iiwa14_real_t t37 = parameters[XX5] + (t17 + t24); /* link j6: inertia of it and all beyond */
     const iiwa14_real_t t38 = parameters[YY5] + t12;
-    const iiwa14_real_t t40 = t22 * t29 - t18 * t30;
-    const iiwa14_real_t t41 = parameters[XY5] + t40;
+    const iiwa14_real_t t40 = t22 * t29 - t18 * t30; /* link j6: column of the mass matrix */
+    const iiwa14_real_t t41 = parameters[XY5] + t40; /* link j6: inertia of it and all beyond */
+    /* link j5: inertia of it and all beyond */
     const iiwa14_real_t t43 = t39 * (t37 - t38) - t41 * (IIWA14_C(2.0) * t42);
     const iiwa14_real_t t44 = t39 * t43;
-    const iiwa14_real_t t45 = parameters[MX6] + t19;
+    const iiwa14_real_t t45 = parameters[MX6] + t19; /* link j7: inertia of it and all beyond */
     const iiwa14_real_t t46 = parameters[MZ7] + t10 - parameters[MY6];
-    const iiwa14_real_t t47 = t18 * t46 - t22 * t45;
-    const iiwa14_real_t t48 = parameters[MZ5] + t47;
+    const iiwa14_real_t t47 = t18 * t46 - t22 * t45; /* link j6: column of the mass matrix */
+    const iiwa14_real_t t48 = parameters[MZ5] + t47; /* link j6: inertia of it and all beyond */
     const iiwa14_real_t t49 = parameters[M5] + (parameters[M6] + parameters[M7]);
-    const iiwa14_real_t t50 = IIWA14_C(0.4) * t49;
+    const iiwa14_real_t t50 = IIWA14_C(0.4) * t49; /* link j5: inertia of it and all beyond */
     const iiwa14_real_t t51 = IIWA14_C(0.4) * (t50 + IIWA14_C(2.0) * t48);
     const iiwa14_real_t t52 = parameters[ZZ4] + (t37 - t44 + t51);
     const iiwa14_real_t t53 = t52 + IIWA14_C(2.56e4) * parameters[IA4];
-    const iiwa14_real_t t54 = t18 * t20 - t22 * parameters[ZZ7];
+    const iiwa14_real_t t54 = t18 * t20 - t22 * parameters[ZZ7]; /* link j7: column of the mass matrix */
     const iiwa14_real_t t55 = t18 * t3;
     const iiwa14_real_t t56 = t39 * t55 + t42 * t19;
     const iiwa14_real_t t57 = t42 * t54 - t39 * t4 + IIWA14_C(0.4) * t56;
     const iiwa14_real_t t58 = t57 * t5;
-    const iiwa14_real_t t59 = t39 * t47;
+    const iiwa14_real_t t59 = t39 * t47; /* link j6: column of the mass matrix */
     const iiwa14_real_t t60 = IIWA14_C(-0.4) * t59 - (t42 * t40 + t39 * t12);
     const iiwa14_real_t t61 = t60 + t57 * t6;
     const iiwa14_real_t t62 = t61 * t33;
-    const iiwa14_real_t t63 = t21 + t22 * t23 - parameters[XZ5];
+    const iiwa14_real_t t63 = t21 + t22 * t23 - parameters[XZ5]; /* link j6: inertia of it and all beyond */
     const iiwa14_real_t t64 = parameters[YZ5] + t31;
     const iiwa14_real_t t65 = parameters[MY5] + (parameters[MZ6] + t3);
-    const iiwa14_real_t t66 = t22 * t46 + t18 * t45;
-    const iiwa14_real_t t67 = parameters[MX5] + t66;
-    const iiwa14_real_t t68 = t39 * t65 + t42 * t67;
+    const iiwa14_real_t t66 = t22 * t46 + t18 * t45; /* link j6: column of the mass matrix */
+    const iiwa14_real_t t67 = parameters[MX5] + t66; /* link j6: inertia of it and all beyond */
+    const iiwa14_real_t t68 = t39 * t65 + t42 * t67; /* link j5: column of the mass matrix */
     const iiwa14_real_t t69 = t42 * t63 - t39 * t64 + IIWA14_C(0.4) * t68;
     const iiwa14_real_t t70 = t69 + t57 * t28 + t61 * t34;
     const iiwa14_real_t t71 = IIWA14_C(-1.0) / t35;
@@ -259,26 +263,27 @@ int iiwa14_forward_dynamics_standard(
         iiwa14_zero(out, 7);
         return IIWA14_STATUS_PIVOT;
     }
-    const iiwa14_real_t t75 = t41 + t42 * t43 - parameters[XZ4];
+    const iiwa14_real_t t75 = t41 + t42 * t43 - parameters[XZ4]; /* link j5: inertia of it and all beyond */
     const iiwa14_real_t t77 = parameters[YZ4] + t69;
-    const iiwa14_real_t t79 = t76 * t75 - t78 * t77;
-    const iiwa14_real_t t80 = t39 * t19 - t42 * t55;
+    const iiwa14_real_t t79 = t76 * t75 - t78 * t77; /* link j4: column of the mass matrix */
+    const iiwa14_real_t t80 = t39 * t19 - t42 * t55; /* link j7: column of the mass matrix */
     const iiwa14_real_t t81 = t39 * t54 + t42 * t4 + IIWA14_C(0.4) * t80;
     const iiwa14_real_t t82 = t76 * t81 - t78 * t27;
-    const iiwa14_real_t t83 = t42 * t47;
+    const iiwa14_real_t t83 = t42 * t47; /* link j6: column of the mass matrix */
     const iiwa14_real_t t84 = t42 * t12 - t39 * t40 + IIWA14_C(0.4) * t83;
     const iiwa14_real_t t85 = t76 * t84 - t78 * t31;
     const iiwa14_real_t t86 = t85 + t82 * t6;
-    const iiwa14_real_t t87 = t39 * t67 - t42 * t65;
+    const iiwa14_real_t t87 = t39 * t67 - t42 * t65; /* link j5: column of the mass matrix */
     const iiwa14_real_t t88 = t39 * t63 + t42 * t64 + IIWA14_C(0.4) * t87;
     const iiwa14_real_t t89 = t76 * t88 - t78 * t25;
     const iiwa14_real_t t90 = t89 + t82 * t28 + t86 * t34;
     const iiwa14_real_t t91 = t79 + t82 * t58 + t86 * t62 + t90 * t72;
     const iiwa14_real_t t92 = IIWA14_C(1.0) / t73;
     const iiwa14_real_t t93 = t91 * t92;
-    const iiwa14_real_t t94 = parameters[XX4] + (t38 + t44 + t51);
+    const iiwa14_real_t t94 = parameters[XX4] + (t38 + t44 + t51); /* link j5: inertia of it and all beyond */
     const iiwa14_real_t t95 = parameters[YY4] + t25;
     const iiwa14_real_t t96 = t88 - parameters[XY4];
+    /* link j4: inertia of it and all beyond */
     const iiwa14_real_t t97 = t78 * (t95 - t94) - t96 * (IIWA14_C(2.0) * t76);
     const iiwa14_real_t t98 = t78 * t97;
     const iiwa14_real_t t99 = parameters[ZZ3] + (t94 + t98);
@@ -299,39 +304,43 @@ int iiwa14_forward_dynamics_standard(
     }
     const iiwa14_real_t t107 = parameters[XX3] + (t95 - t98);
     const iiwa14_real_t t108 = parameters[YY3] + t52;
-    const iiwa14_real_t t110 = t78 * t75 + t76 * t77;
-    const iiwa14_real_t t111 = parameters[XY3] + t110;
+    const iiwa14_real_t t110 = t78 * t75 + t76 * t77; /* link j4: column of the mass matrix */
+    const iiwa14_real_t t111 = parameters[XY3] + t110; /* link j4: inertia of it and all beyond */
+    /* link j3: inertia of it and all beyond */
     const iiwa14_real_t t113 = t109 * (t108 - t107) + t111 * (IIWA14_C(2.0) * t112);
     const iiwa14_real_t t114 = t109 * t113;
-    const iiwa14_real_t t115 = parameters[MX4] + t87;
+    const iiwa14_real_t t115 = parameters[MX4] + t87; /* link j5: inertia of it and all beyond */
     const iiwa14_real_t t116 = parameters[MY4] + (t48 + t50);
-    const iiwa14_real_t t117 = t78 * t116 + t76 * t115;
+    const iiwa14_real_t t117 = t78 * t116 + t76 * t115; /* link j4: column of the mass matrix */
+    /* link j3: inertia of it and all beyond */
     const iiwa14_real_t t118 = IIWA14_C(0.42) * (parameters[M3] + (parameters[M4] + t49))
         + IIWA14_C(2.0) * (parameters[MZ3] + t117);
     const iiwa14_real_t t119 = IIWA14_C(0.42) * t118;
     const iiwa14_real_t t120 = parameters[ZZ2] + (t107 + t114 + t119) + IIWA14_C(2.56e4) * parameters[IA2];
-    const iiwa14_real_t t121 = t78 * t81 + t76 * t27;
+    const iiwa14_real_t t121 = t78 * t81 + t76 * t27; /* link j7: column of the mass matrix */
     const iiwa14_real_t t122 = t78 * t56 + t76 * (t22 * t3);
     const iiwa14_real_t t123 = t112 * t121 + t109 * t57 + IIWA14_C(0.42) * (t109 * t122 + t112 * t80);
     const iiwa14_real_t t124 = t123 * t5;
-    const iiwa14_real_t t125 = t78 * t84 + t76 * t31;
+    const iiwa14_real_t t125 = t78 * t84 + t76 * t31; /* link j6: column of the mass matrix */
     const iiwa14_real_t t126 = t78 * t59 + t76 * t66;
     const iiwa14_real_t t127 = t112 * t125 + t109 * t60 + IIWA14_C(0.42) * (t112 * t83 - t109 * t126);
     const iiwa14_real_t t128 = t127 + t123 * t6;
     const iiwa14_real_t t129 = t128 * t33;
-    const iiwa14_real_t t130 = t78 * t88 + t76 * t25;
+    const iiwa14_real_t t130 = t78 * t88 + t76 * t25; /* link j5: column of the mass matrix */
     const iiwa14_real_t t131 = t78 * t68;
     const iiwa14_real_t t132 = t112 * t130 + t109 * t69 + IIWA14_C(0.42) * (t109 * t131 + t112 * t87);
     const iiwa14_real_t t133 = t132 + t123 * t28 + t128 * t34;
     const iiwa14_real_t t134 = t133 * t71;
     const iiwa14_real_t t135 = t120 + t123 * t124 + t128 * t129 + t133 * t134;
+    /* link j4: column of the mass matrix */
     const iiwa14_real_t t136 = t112 * t110 + t109 * t52 + IIWA14_C(0.42) * (t109 * t117);
     const iiwa14_real_t t137 = t136 + t123 * t58 + t128 * t62 + t133 * t72;
     const iiwa14_real_t t138 = t137 * t92;
-    const iiwa14_real_t t139 = t96 + t76 * t97 - parameters[XZ3];
+    const iiwa14_real_t t139 = t96 + t76 * t97 - parameters[XZ3]; /* link j4: inertia of it and all beyond */
     const iiwa14_real_t t140 = parameters[YZ3] + t79;
     const iiwa14_real_t t141 = parameters[MY3] - (parameters[MZ4] - t68);
     const iiwa14_real_t t142 = parameters[MX3] + (t78 * t115 - t76 * t116);
+    /* link j3: column of the mass matrix */
     const iiwa14_real_t t143 = t112 * t139 - t109 * t140 + IIWA14_C(0.42) * (t109 * t141 + t112 * t142);
     const iiwa14_real_t t144 = t143 - t123 * t101 - t128 * t102 - t133 * t103;
     const iiwa14_real_t t145 = t144 + t137 * t93;
@@ -347,25 +356,33 @@ int iiwa14_forward_dynamics_standard(
         iiwa14_zero(out, 7);
         return IIWA14_STATUS_PIVOT;
     }
+    /* link j2: column of the mass matrix */
     const iiwa14_real_t t152 = t150 * (parameters[XZ2] + (t111 - t112 * t113)) + t151 * (parameters[YZ2]
         + t143);
+    /* link j7: column of the mass matrix */
     const iiwa14_real_t t153 = t112 * t57 - t109 * t121 + IIWA14_C(0.42) * (t112 * t122 - t109 * t80);
     const iiwa14_real_t t154 = t150 * t153 + t151 * t82;
+    /* link j6: column of the mass matrix */
     const iiwa14_real_t t155 = t112 * t60 - t109 * t125 + IIWA14_C(-0.42) * (t112 * t126 + t109 * t83);
     const iiwa14_real_t t156 = t150 * t155 + t151 * t85 + t154 * t6;
+    /* link j5: column of the mass matrix */
     const iiwa14_real_t t157 = t112 * t69 - t109 * t130 + IIWA14_C(0.42) * (t112 * t131 - t109 * t87);
     const iiwa14_real_t t158 = t150 * t157 + t151 * t89 + t154 * t28 + t156 * t34;
     const iiwa14_real_t t159 = t152 - t154 * t124 - t156 * t129 - t158 * t134;
+    /* link j4: column of the mass matrix */
     const iiwa14_real_t t160 = t112 * t52 - t109 * t110 + IIWA14_C(0.42) * (t112 * t117);
     const iiwa14_real_t t161 = t150 * t160 + t151 * t79 + t154 * t58 + t156 * t62;
     const iiwa14_real_t t162 = t161 + t158 * t72;
+    /* link j3: column of the mass matrix */
     const iiwa14_real_t t163 = t109 * t139 + t112 * t140 + IIWA14_C(0.42) * (t109 * t142 - t112 * t141);
     const iiwa14_real_t t164 = t150 * t163 + t151 * t99 + t154 * t101 + t156 * t102;
     const iiwa14_real_t t165 = t162 * t93 - (t164 + t158 * t103);
     const iiwa14_real_t t166 = t159 + t162 * t138 + t165 * t147;
     const iiwa14_real_t t167 = IIWA14_C(1.0) / t148;
     const iiwa14_real_t t168 = t166 * t167;
+    /* link j3: inertia of it and all beyond */
     const iiwa14_real_t t169 = parameters[XX2] + (t108 - t114 + t119);
+    /* link j2: inertia of it and all beyond */
     const iiwa14_real_t t170 = t151 * (parameters[YY2] + t99 - t169) + (parameters[XY2]
         + t163) * (IIWA14_C(2.0) * t150);
     const iiwa14_real_t t171 = parameters[ZZ1] + (t169 + t151 * t170) + IIWA14_C(2.56e4) * parameters[IA1];
@@ -385,57 +402,57 @@ int iiwa14_forward_dynamics_standard(
         iiwa14_zero(out, 7);
         return IIWA14_STATUS_PIVOT;
     }
-    const iiwa14_real_t t180 = t150 * dq[0];
-    const iiwa14_real_t t181 = t112 * dq[1] - t109 * t180;
-    const iiwa14_real_t t182 = t151 * dq[0];
-    const iiwa14_real_t t183 = dq[2] + t182;
-    const iiwa14_real_t t184 = t78 * t181 + t76 * t183;
-    const iiwa14_real_t t185 = t112 * t180 + t109 * dq[1];
-    const iiwa14_real_t t186 = t185 - dq[3];
-    const iiwa14_real_t t187 = t39 * t184 + t42 * t186;
+    const iiwa14_real_t t180 = t150 * dq[0]; /* link j2: motion */
+    const iiwa14_real_t t181 = t112 * dq[1] - t109 * t180; /* link j3: motion */
+    const iiwa14_real_t t182 = t151 * dq[0]; /* link j2: motion */
+    const iiwa14_real_t t183 = dq[2] + t182; /* link j3: motion */
+    const iiwa14_real_t t184 = t78 * t181 + t76 * t183; /* link j4: motion */
+    const iiwa14_real_t t185 = t112 * t180 + t109 * dq[1]; /* link j3: motion */
+    const iiwa14_real_t t186 = t185 - dq[3]; /* link j4: motion */
+    const iiwa14_real_t t187 = t39 * t184 + t42 * t186; /* link j5: motion */
     const iiwa14_real_t t188 = t39 * t186 - t42 * t184;
     const iiwa14_real_t t189 = t187 * t188;
-    const iiwa14_real_t t190 = t181 * t185;
-    const iiwa14_real_t t191 = dq[1] * t180;
-    const iiwa14_real_t t192 = t191 + t190;
-    const iiwa14_real_t t193 = t185 * t183;
-    const iiwa14_real_t t194 = t180 * t182;
+    const iiwa14_real_t t190 = t181 * t185; /* link j3: motion */
+    const iiwa14_real_t t191 = dq[1] * t180; /* link j2: motion */
+    const iiwa14_real_t t192 = t191 + t190; /* link j4: motion */
+    const iiwa14_real_t t193 = t185 * t183; /* link j3: motion */
+    const iiwa14_real_t t194 = t180 * t182; /* link j2: motion */
     const iiwa14_real_t t195 = dq[1] * t182;
     const iiwa14_real_t t196 = IIWA14_C(-2.0) * t195;
-    const iiwa14_real_t t197 = t112 * t194 - t109 * t196;
+    const iiwa14_real_t t197 = t112 * t194 - t109 * t196; /* link j3: motion */
     const iiwa14_real_t t198 = t197 - t193;
-    const iiwa14_real_t t199 = t198 - t193;
+    const iiwa14_real_t t199 = t198 - t193; /* link j4: motion */
     const iiwa14_real_t t200 = t78 * t192 - t76 * t199;
     const iiwa14_real_t t201 = t184 * t186;
     const iiwa14_real_t t202 = t200 - t201;
-    const iiwa14_real_t t203 = t189 + t202;
-    const iiwa14_real_t t204 = t76 * t181 - t78 * t183;
+    const iiwa14_real_t t203 = t189 + t202; /* link j6: motion */
+    const iiwa14_real_t t204 = t76 * t181 - t78 * t183; /* link j4: motion */
     const iiwa14_real_t t205 = t184 * t204;
-    const iiwa14_real_t t206 = t181 * t183;
+    const iiwa14_real_t t206 = t181 * t183; /* link j3: motion */
     const iiwa14_real_t t207 = t109 * t194 + t112 * t196;
     const iiwa14_real_t t208 = t206 + t207;
-    const iiwa14_real_t t209 = t205 + t208;
-    const iiwa14_real_t t210 = t76 * t192 + t78 * t199;
+    const iiwa14_real_t t209 = t205 + t208; /* link j5: motion */
+    const iiwa14_real_t t210 = t76 * t192 + t78 * t199; /* link j4: motion */
     const iiwa14_real_t t211 = t204 * t186;
     const iiwa14_real_t t212 = t210 - t211;
-    const iiwa14_real_t t213 = t212 - t211;
+    const iiwa14_real_t t213 = t212 - t211; /* link j5: motion */
     const iiwa14_real_t t214 = t42 * t209 + t39 * t213;
     const iiwa14_real_t t215 = t204 - dq[4];
     const iiwa14_real_t t216 = t188 * t215;
     const iiwa14_real_t t217 = t216 + t214;
-    const iiwa14_real_t t218 = t216 + t217;
+    const iiwa14_real_t t218 = t216 + t217; /* link j6: motion */
     const iiwa14_real_t t219 = t22 * t203 - t18 * t218;
     const iiwa14_real_t t220 = t18 * t215 - t22 * t187;
     const iiwa14_real_t t221 = dq[5] + t188;
     const iiwa14_real_t t222 = t220 * t221;
     const iiwa14_real_t t223 = t222 + t219;
-    const iiwa14_real_t t224 = t222 + t223;
-    const iiwa14_real_t t225 = t39 * t209 - t42 * t213;
+    const iiwa14_real_t t224 = t222 + t223; /* link j7: motion */
+    const iiwa14_real_t t225 = t39 * t209 - t42 * t213; /* link j5: motion */
     const iiwa14_real_t t226 = t187 * t215;
     const iiwa14_real_t t227 = t225 - t226;
-    const iiwa14_real_t t228 = t18 * t187 + t22 * t215;
+    const iiwa14_real_t t228 = t18 * t187 + t22 * t215; /* link j6: motion */
     const iiwa14_real_t t229 = t228 * t220;
-    const iiwa14_real_t t230 = t229 + t227;
+    const iiwa14_real_t t230 = t229 + t227; /* link j7: motion */
     const iiwa14_real_t t231 = t2 * t224 - t1 * t230;
     const iiwa14_real_t t232 = t2 * t221 - t1 * t228;
     const iiwa14_real_t t233 = t220 - dq[6];
@@ -445,52 +462,54 @@ int iiwa14_forward_dynamics_standard(
     const iiwa14_real_t t237 = t2 * t228 + t1 * t221;
     const iiwa14_real_t t238 = t237 * t233;
     const iiwa14_real_t t239 = t236 - t238;
-    const iiwa14_real_t t240 = t239 - t238;
+    const iiwa14_real_t t240 = t239 - t238; /* link j7: force and moment */
     const iiwa14_real_t t241 = parameters[XX7] * t235 + t234 * (parameters[YY7] - parameters[ZZ7])
         - parameters[XY7] * t240;
-    const iiwa14_real_t t242 = t18 * t203 + t22 * t218;
+    const iiwa14_real_t t242 = t18 * t203 + t22 * t218; /* link j6: motion */
     const iiwa14_real_t t243 = t228 * t221;
     const iiwa14_real_t t244 = t243 - t242;
-    const iiwa14_real_t t245 = t237 * t232;
-    const iiwa14_real_t t246 = t245 + t244;
-    const iiwa14_real_t t247 = t232 * t232;
+    const iiwa14_real_t t245 = t237 * t232; /* link j7: motion */
+    const iiwa14_real_t t246 = t245 + t244; /* link j7: force and moment */
+    const iiwa14_real_t t247 = t232 * t232; /* link j7: motion */
     const iiwa14_real_t t248 = t233 * t233;
-    const iiwa14_real_t t249 = t180 * t180;
+    const iiwa14_real_t t249 = t180 * t180; /* link j2: motion */
     const iiwa14_real_t t250 = dq[1] * dq[1];
     const iiwa14_real_t t251 = IIWA14_C(9.81) * t151;
-    const iiwa14_real_t t252 = t251 + IIWA14_C(-0.42) * (t249 + t250);
-    const iiwa14_real_t t253 = IIWA14_C(9.81) * t150;
-    const iiwa14_real_t t254 = t253 + IIWA14_C(0.42) * t194;
+    const iiwa14_real_t t252 = t251 + IIWA14_C(-0.42) * (t249 + t250); /* link j3: motion */
+    const iiwa14_real_t t253 = IIWA14_C(9.81) * t150; /* link j2: motion */
+    const iiwa14_real_t t254 = t253 + IIWA14_C(0.42) * t194; /* link j3: motion */
     const iiwa14_real_t t255 = IIWA14_C(0.84) * t195;
     const iiwa14_real_t t256 = t109 * t254 - t112 * t255;
-    const iiwa14_real_t t257 = t78 * t256 - t76 * t252;
-    const iiwa14_real_t t258 = t257 + IIWA14_C(0.4) * t209;
-    const iiwa14_real_t t259 = t112 * t254 + t109 * t255;
-    const iiwa14_real_t t260 = t259 + IIWA14_C(0.4) * t213;
+    const iiwa14_real_t t257 = t78 * t256 - t76 * t252; /* link j4: motion */
+    const iiwa14_real_t t258 = t257 + IIWA14_C(0.4) * t209; /* link j5: motion */
+    const iiwa14_real_t t259 = t112 * t254 + t109 * t255; /* link j3: motion */
+    const iiwa14_real_t t260 = t259 + IIWA14_C(0.4) * t213; /* link j5: motion */
     const iiwa14_real_t t261 = t42 * t260 - t39 * t258;
-    const iiwa14_real_t t262 = t184 * t184;
+    const iiwa14_real_t t262 = t184 * t184; /* link j4: motion */
     const iiwa14_real_t t263 = t186 * t186;
-    const iiwa14_real_t t264 = t262 + t263;
-    const iiwa14_real_t t265 = t78 * t252 + t76 * t256;
-    const iiwa14_real_t t266 = IIWA14_C(0.4) * t264 - t265;
-    const iiwa14_real_t t267 = t18 * t261 + t22 * t266;
-    const iiwa14_real_t t268 = t267 + IIWA14_C(-0.126) * t230;
-    const iiwa14_real_t t269 = t42 * t258 + t39 * t260;
-    const iiwa14_real_t t270 = t269 + IIWA14_C(-0.126) * t224;
+    const iiwa14_real_t t264 = t262 + t263; /* link j5: motion */
+    const iiwa14_real_t t265 = t78 * t252 + t76 * t256; /* link j4: motion */
+    const iiwa14_real_t t266 = IIWA14_C(0.4) * t264 - t265; /* link j5: motion */
+    const iiwa14_real_t t267 = t18 * t261 + t22 * t266; /* link j6: motion */
+    const iiwa14_real_t t268 = t267 + IIWA14_C(-0.126) * t230; /* link j7: motion */
+    const iiwa14_real_t t269 = t42 * t258 + t39 * t260; /* link j5: motion */
+    const iiwa14_real_t t270 = t269 + IIWA14_C(-0.126) * t224; /* link j7: motion */
     const iiwa14_real_t t271 = t1 * t268 - t2 * t270;
-    const iiwa14_real_t t272 = t228 * t228;
+    const iiwa14_real_t t272 = t228 * t228; /* link j6: motion */
     const iiwa14_real_t t273 = t221 * t221;
-    const iiwa14_real_t t274 = t272 + t273;
-    const iiwa14_real_t t275 = t22 * t261 - t18 * t266;
-    const iiwa14_real_t t276 = IIWA14_C(-0.126) * t274 + t275;
+    const iiwa14_real_t t274 = t272 + t273; /* link j7: motion */
+    const iiwa14_real_t t275 = t22 * t261 - t18 * t266; /* link j6: motion */
+    const iiwa14_real_t t276 = IIWA14_C(-0.126) * t274 + t275; /* link j7: motion */
+    /* link j7: force and moment */
     const iiwa14_real_t t277 = t241 + parameters[XZ7] * t246 + (t247 - t248) * parameters[YZ7]
         + (parameters[MY7] * t276 + parameters[MZ7] * t271);
     const iiwa14_real_t t278 = t235 - t234;
     const iiwa14_real_t t279 = parameters[XY7] * t278 - (parameters[YY7] * t239 + t238 * (parameters[XX7]
         - parameters[ZZ7]));
     const iiwa14_real_t t280 = t244 - t245;
-    const iiwa14_real_t t281 = t237 * t237;
+    const iiwa14_real_t t281 = t237 * t237; /* link j7: motion */
     const iiwa14_real_t t282 = t2 * t268 + t1 * t270;
+    /* link j7: force and moment */
     const iiwa14_real_t t283 = t279 + parameters[YZ7] * t280 - (t281 - t248) * parameters[XZ7]
         + (parameters[MZ7] * t282 - parameters[MX7] * t276);
     const iiwa14_real_t t284 = (t247 + t248) * parameters[MX7] + parameters[MY7] * t280
@@ -499,162 +518,208 @@ int iiwa14_forward_dynamics_standard(
     const iiwa14_real_t t286 = parameters[MX7] * t246 - (t281 + t248) * parameters[MY7]
         - parameters[MZ7] * t231;
     const iiwa14_real_t t287 = t286 - parameters[M7] * t271;
-    const iiwa14_real_t t288 = t1 * t285 + t2 * t287;
-    const iiwa14_real_t t289 = t243 + t244;
+    const iiwa14_real_t t288 = t1 * t285 + t2 * t287; /* link j7: what it passes on */
+    const iiwa14_real_t t289 = t243 + t244; /* link j7: motion */
+    /* link j6: force and moment */
     const iiwa14_real_t t290 = parameters[XX6] * t223 - t222 * (parameters[YY6] - parameters[ZZ6])
         - parameters[XY6] * t289;
-    const iiwa14_real_t t291 = t227 - t229;
-    const iiwa14_real_t t292 = t220 * t220;
+    const iiwa14_real_t t291 = t227 - t229; /* link j7: motion */
+    const iiwa14_real_t t292 = t220 * t220; /* link j6: motion */
+    /* link j6: force and moment */
     const iiwa14_real_t t293 = t290 - parameters[XZ6] * t291 + (t292 - t273) * parameters[YZ6]
         + (parameters[MY6] * t269 + parameters[MZ6] * t275);
+    /* link j7: what it passes on */
     const iiwa14_real_t t294 = t293 + (t2 * t277 - t1 * t283 - IIWA14_C(0.126) * t288);
+    /* link j7: force and moment */
     const iiwa14_real_t t295 = parameters[YZ7] * t236 - (parameters[ZZ7] * t244 + t245 * t7)
         - parameters[XZ7] * t231;
     const iiwa14_real_t t296 = t295 + (t247 - t281) * parameters[XY7] + (parameters[MX7] * t271
         + parameters[MY7] * t282);
+    /* link j6: force and moment */
     const iiwa14_real_t t297 = parameters[XY6] * t224 - (parameters[YY6] * t244 + t243 * (parameters[ZZ6]
         - parameters[XX6]));
     const iiwa14_real_t t298 = t297 - parameters[YZ6] * t230 + (t273 - t272) * parameters[XZ6]
         + (parameters[MZ6] * t267 - parameters[MX6] * t269);
-    const iiwa14_real_t t299 = t298 + t296;
-    const iiwa14_real_t t300 = t227 - t226;
+    const iiwa14_real_t t299 = t298 + t296; /* link j7: what it passes on */
+    const iiwa14_real_t t300 = t227 - t226; /* link j6: motion */
+    /* link j5: force and moment */
     const iiwa14_real_t t301 = parameters[XX5] * t217 - t216 * (parameters[YY5] - parameters[ZZ5])
         + parameters[XY5] * t300;
-    const iiwa14_real_t t302 = t202 - t189;
-    const iiwa14_real_t t303 = t188 * t188;
+    const iiwa14_real_t t302 = t202 - t189; /* link j6: motion */
+    const iiwa14_real_t t303 = t188 * t188; /* link j5: motion */
     const iiwa14_real_t t304 = t215 * t215;
+    /* link j5: force and moment */
     const iiwa14_real_t t305 = t301 + parameters[XZ5] * t302 + (t304 - t303) * parameters[YZ5]
         + (parameters[MY5] * t266 + parameters[MZ5] * t269);
-    const iiwa14_real_t t306 = t305 + (t22 * t299 - t18 * t294);
-    const iiwa14_real_t t307 = t1 * t287 - t2 * t285;
+    const iiwa14_real_t t306 = t305 + (t22 * t299 - t18 * t294); /* link j6: what it passes on */
+    const iiwa14_real_t t307 = t1 * t287 - t2 * t285; /* link j7: what it passes on */
+    /* link j6: force and moment */
     const iiwa14_real_t t308 = parameters[YZ6] * t242 - (parameters[ZZ6] * t227 + t229 * (parameters[XX6]
         - parameters[YY6]));
     const iiwa14_real_t t309 = t308 + parameters[XZ6] * t219 + (t272 - t292) * parameters[XY6]
         - (parameters[MX6] * t275 + parameters[MY6] * t267);
+    /* link j7: what it passes on */
     const iiwa14_real_t t310 = t309 + (t1 * t277 + t2 * t283 + IIWA14_C(-0.126) * t307);
+    /* link j5: force and moment */
     const iiwa14_real_t t311 = parameters[YY5] * t227 + t226 * (parameters[XX5] - parameters[ZZ5])
         + parameters[XY5] * t218;
-    const iiwa14_real_t t312 = t187 * t187;
+    const iiwa14_real_t t312 = t187 * t187; /* link j5: motion */
+    /* link j5: force and moment */
     const iiwa14_real_t t313 = parameters[MZ5] * t261 + parameters[MX5] * t266 - (t311
         + parameters[YZ5] * t203 + (t312 - t304) * parameters[XZ5]);
-    const iiwa14_real_t t314 = t313 + t310;
+    const iiwa14_real_t t314 = t313 + t310; /* link j6: what it passes on */
+    /* link j6: force and moment */
     const iiwa14_real_t t315 = (t292 + t273) * parameters[MX6] - parameters[MY6] * t230
         - parameters[MZ6] * t242;
-    const iiwa14_real_t t316 = t315 - parameters[M6] * t267 + t307;
+    const iiwa14_real_t t316 = t315 - parameters[M6] * t267 + t307; /* link j7: what it passes on */
+    /* link j6: force and moment */
     const iiwa14_real_t t317 = parameters[M6] * t275 + (parameters[MX6] * t291 + t274 * parameters[MY6]
         + parameters[MZ6] * t219);
+    /* link j7: force and moment */
     const iiwa14_real_t t318 = parameters[MX7] * t240 + parameters[MY7] * t278 - (t281
         + t247) * parameters[MZ7];
-    const iiwa14_real_t t319 = t317 + (parameters[M7] * t276 + t318);
+    const iiwa14_real_t t319 = t317 + (parameters[M7] * t276 + t318); /* link j7: what it passes on */
+    /* link j5: force and moment */
     const iiwa14_real_t t320 = (t303 + t304) * parameters[MX5] - parameters[MY5] * t203
         + parameters[MZ5] * t225;
+    /* link j6: what it passes on */
     const iiwa14_real_t t321 = parameters[M5] * t261 - t320 + (t22 * t319 - t18 * t316);
+    /* link j6: force and moment */
     const iiwa14_real_t t322 = parameters[MX6] * t289 + parameters[MY6] * t224 - (t272
         + t292) * parameters[MZ6];
+    /* link j5: force and moment */
     const iiwa14_real_t t323 = parameters[MZ5] * t214 - (parameters[MX5] * t302 + (t312
         + t304) * parameters[MY5]);
+    /* link j6: what it passes on */
     const iiwa14_real_t t324 = parameters[M5] * t269 + t323 + (parameters[M6] * t269 + t322 + t288);
-    const iiwa14_real_t t325 = t42 * t321 + t39 * t324;
-    const iiwa14_real_t t326 = t202 - t201;
+    const iiwa14_real_t t325 = t42 * t321 + t39 * t324; /* link j5: what it passes on */
+    const iiwa14_real_t t326 = t202 - t201; /* link j5: motion */
+    /* link j4: force and moment */
     const iiwa14_real_t t327 = parameters[XX4] * t212 + t211 * (parameters[YY4] - parameters[ZZ4])
         + parameters[XY4] * t326;
-    const iiwa14_real_t t328 = t205 - t208;
-    const iiwa14_real_t t329 = t204 * t204;
+    const iiwa14_real_t t328 = t205 - t208; /* link j5: motion */
+    const iiwa14_real_t t329 = t204 * t204; /* link j4: motion */
+    /* link j4: force and moment */
     const iiwa14_real_t t330 = t327 + parameters[XZ4] * t328 + (t263 - t329) * parameters[YZ4]
         + (parameters[MY4] * t259 + parameters[MZ4] * t265);
+    /* link j5: what it passes on */
     const iiwa14_real_t t331 = t330 + (t39 * t306 + t42 * t314 + IIWA14_C(0.4) * t325);
+    /* link j5: force and moment */
     const iiwa14_real_t t332 = parameters[ZZ5] * t202 - t189 * (parameters[YY5] - parameters[XX5])
         + parameters[YZ5] * t225;
     const iiwa14_real_t t333 = t332 + parameters[XZ5] * t214 + (t303 - t312) * parameters[XY5]
         + (parameters[MY5] * t261 - parameters[MX5] * t269);
-    const iiwa14_real_t t334 = t333 + (t22 * t294 + t18 * t299);
+    const iiwa14_real_t t334 = t333 + (t22 * t294 + t18 * t299); /* link j6: what it passes on */
+    /* link j4: force and moment */
     const iiwa14_real_t t335 = parameters[YY4] * t202 + t201 * (parameters[XX4] - parameters[ZZ4])
         + parameters[XY4] * t213;
     const iiwa14_real_t t336 = t335 - parameters[YZ4] * t209 + (t262 - t263) * parameters[XZ4]
         + (parameters[MZ4] * t257 - parameters[MX4] * t259);
-    const iiwa14_real_t t337 = t336 + t334;
+    const iiwa14_real_t t337 = t336 + t334; /* link j5: what it passes on */
+    /* link j3: force and moment */
     const iiwa14_real_t t338 = parameters[XX3] * t198 + t193 * (parameters[YY3] - parameters[ZZ3])
         + parameters[XY3] * (t206 + t208);
-    const iiwa14_real_t t339 = t191 - t190;
-    const iiwa14_real_t t340 = t185 * t185;
+    const iiwa14_real_t t339 = t191 - t190; /* link j4: motion */
+    const iiwa14_real_t t340 = t185 * t185; /* link j3: motion */
     const iiwa14_real_t t341 = t183 * t183;
+    /* link j3: force and moment */
     const iiwa14_real_t t342 = (t340 - t341) * parameters[YZ3] - (t338 + parameters[XZ3] * t339)
         + (t252 * parameters[MY3] - parameters[MZ3] * t259);
-    const iiwa14_real_t t343 = t342 + (t76 * t337 - t78 * t331);
-    const iiwa14_real_t t344 = t42 * t324 - t39 * t321;
+    const iiwa14_real_t t343 = t342 + (t76 * t337 - t78 * t331); /* link j4: what it passes on */
+    const iiwa14_real_t t344 = t42 * t324 - t39 * t321; /* link j5: what it passes on */
+    /* link j4: force and moment */
     const iiwa14_real_t t345 = parameters[ZZ4] * t208 + t205 * (parameters[XX4] - parameters[YY4])
         - parameters[YZ4] * t200;
     const iiwa14_real_t t346 = t345 - parameters[XZ4] * t210 + (t262 - t329) * parameters[XY4]
         + (parameters[MX4] * t265 + parameters[MY4] * t257);
+    /* link j5: what it passes on */
     const iiwa14_real_t t347 = t346 + (t42 * t306 - t39 * t314 + IIWA14_C(0.4) * t344);
+    /* link j3: force and moment */
     const iiwa14_real_t t348 = parameters[YY3] * t208 - t206 * (parameters[XX3] - parameters[ZZ3])
         + parameters[XY3] * t199;
-    const iiwa14_real_t t349 = t181 * t181;
+    const iiwa14_real_t t349 = t181 * t181; /* link j3: motion */
+    /* link j3: force and moment */
     const iiwa14_real_t t350 = t348 + parameters[YZ3] * t192 + (t349 - t341) * parameters[XZ3]
         + (parameters[MZ3] * t256 + t252 * parameters[MX3]);
-    const iiwa14_real_t t351 = t350 + t347;
+    const iiwa14_real_t t351 = t350 + t347; /* link j4: what it passes on */
+    /* link j4: force and moment */
     const iiwa14_real_t t352 = (t329 + t263) * parameters[MX4] + parameters[MY4] * t209
         + parameters[MZ4] * t200;
+    /* link j5: force and moment */
     const iiwa14_real_t t353 = parameters[MX5] * t300 - parameters[MY5] * t218 - (t312
         + t303) * parameters[MZ5];
+    /* link j6: what it passes on */
     const iiwa14_real_t t354 = t353 - parameters[M5] * t266 + (t22 * t316 + t18 * t319);
+    /* link j4: force and moment */
     const iiwa14_real_t t355 = parameters[M4] * t265 + (parameters[MZ4] * t210 - (parameters[MX4] * t328
         + t264 * parameters[MY4]));
+    /* link j4: what it passes on */
     const iiwa14_real_t t356 = t78 * (parameters[M4] * t257 + t352 + t344) + t76 * (t355 + t354);
+    /* link j3: force and moment */
     const iiwa14_real_t t357 = (t340 + t341) * parameters[MX3] - parameters[MY3] * t192
         + parameters[MZ3] * t207;
-    const iiwa14_real_t t358 = parameters[M3] * t256 + t357 + t356;
+    const iiwa14_real_t t358 = parameters[M3] * t256 + t357 + t356; /* link j4: what it passes on */
+    /* link j4: force and moment */
     const iiwa14_real_t t359 = parameters[MY4] * t213 - parameters[MX4] * t326 + (t262
         + t329) * parameters[MZ4];
+    /* link j3: force and moment */
     const iiwa14_real_t t360 = parameters[MX3] * t339 + (t349 + t341) * parameters[MY3]
         - parameters[MZ3] * t197;
+    /* link j4: what it passes on */
     const iiwa14_real_t t361 = parameters[M3] * t259 - t360 + (parameters[M4] * t259 + t359 + t325);
+    /* link j3: what it passes on */
     const iiwa14_real_t t362 = t109 * t343 + t112 * t351 + IIWA14_C(0.42) * (t112 * t358 - t109 * t361);
+    /* link j2: force and moment */
     const iiwa14_real_t t363 = t195 * (parameters[YY2] - parameters[ZZ2]) - t195 * parameters[XX2]
         + IIWA14_C(2.0) * t191 * parameters[XY2];
-    const iiwa14_real_t t364 = t182 * t182;
+    const iiwa14_real_t t364 = t182 * t182; /* link j2: motion */
+    /* link j2: force and moment */
     const iiwa14_real_t t365 = t363 + t194 * parameters[XZ2] + (t364 - t250) * parameters[YZ2]
         + t251 * parameters[MZ2];
+    /* link j3: force and moment */
     const iiwa14_real_t t366 = t191 * parameters[ZZ3] - t190 * (parameters[YY3] - parameters[XX3])
         + parameters[YZ3] * t207;
     const iiwa14_real_t t367 = t366 + parameters[XZ3] * t197 + (t340 - t349) * parameters[XY3]
         - (parameters[MX3] * t259 + parameters[MY3] * t256);
-    const iiwa14_real_t t368 = t367 + (t76 * t331 + t78 * t337);
+    const iiwa14_real_t t368 = t367 + (t76 * t331 + t78 * t337); /* link j4: what it passes on */
+    /* link j2: force and moment */
     const iiwa14_real_t t369 = t191 * parameters[YY2] + t191 * (parameters[ZZ2] - parameters[XX2])
         + t196 * parameters[XY2];
     const iiwa14_real_t t370 = t369 - t194 * parameters[YZ2] + (t250 - t249) * parameters[XZ2]
         - t253 * parameters[MZ2];
-    const iiwa14_real_t t371 = iiwa14_sign(dq[0]);
+    const iiwa14_real_t t371 = iiwa14_sign(dq[0]); /* joint j1: coulomb_friction */
     const iiwa14_real_t t372 = IIWA14_C(160.0) * (IIWA14_C(-160.0) * dq[0] * parameters[FV1]
         - t371 * parameters[FC1]) + (t150 * (t365 + t362) + t151 * (t370 + t368));
-    const iiwa14_real_t t373 = iiwa14_sign(dq[6]);
+    const iiwa14_real_t t373 = iiwa14_sign(dq[6]); /* joint j7: coulomb_friction */
     const iiwa14_real_t t374 = IIWA14_C(160.0) * (IIWA14_C(160.0) * dq[6] * parameters[FV7]
         + t373 * parameters[FC7]) - t296;
     const iiwa14_real_t t375 = IIWA14_C(8.0) * input[6] - t374;
-    const iiwa14_real_t t376 = iiwa14_sign(dq[5]);
+    const iiwa14_real_t t376 = iiwa14_sign(dq[5]); /* joint j6: coulomb_friction */
     const iiwa14_real_t t377 = IIWA14_C(160.0) * (IIWA14_C(160.0) * dq[5] * parameters[FV6]
         + t376 * parameters[FC6]) + t310;
     const iiwa14_real_t t378 = IIWA14_C(8.0) * input[5] - t377 + t375 * t6;
     const iiwa14_real_t t379 = IIWA14_C(16.0) * input[0] + t372 - t375 * t172 - t378 * t173;
-    const iiwa14_real_t t380 = iiwa14_sign(dq[4]);
+    const iiwa14_real_t t380 = iiwa14_sign(dq[4]); /* joint j5: coulomb_friction */
     const iiwa14_real_t t381 = IIWA14_C(1.0e2) * (IIWA14_C(1.0e2) * dq[4] * parameters[FV5]
         + t380 * parameters[FC5]) - t334;
     const iiwa14_real_t t382 = IIWA14_C(8.0) * input[4] - t381 + t375 * t28 + t378 * t34;
-    const iiwa14_real_t t383 = iiwa14_sign(dq[3]);
+    const iiwa14_real_t t383 = iiwa14_sign(dq[3]); /* joint j4: coulomb_friction */
     const iiwa14_real_t t384 = IIWA14_C(160.0) * (IIWA14_C(160.0) * dq[3] * parameters[FV4]
         + t383 * parameters[FC4]) + t347;
     const iiwa14_real_t t385 = IIWA14_C(16.0) * input[3] - t384 + t375 * t58 + t378 * t62;
     const iiwa14_real_t t386 = t385 + t382 * t72;
-    const iiwa14_real_t t387 = iiwa14_sign(dq[2]);
+    const iiwa14_real_t t387 = iiwa14_sign(dq[2]); /* joint j3: coulomb_friction */
     const iiwa14_real_t t388 = IIWA14_C(160.0) * (IIWA14_C(-160.0) * dq[2] * parameters[FV3]
         - t387 * parameters[FC3]) + t368;
     const iiwa14_real_t t389 = IIWA14_C(16.0) * input[2] + t388 - t375 * t101 - t378 * t102;
     const iiwa14_real_t t390 = t389 - t382 * t103 + t386 * t93;
     const iiwa14_real_t t391 = t379 - t382 * t174 + t386 * t176 + t390 * t177;
+    /* link j3: what it passes on */
     const iiwa14_real_t t392 = t109 * t351 - t112 * t343 + IIWA14_C(0.42) * (t109 * t358 + t112 * t361);
+    /* link j2: force and moment */
     const iiwa14_real_t t393 = t194 * (parameters[XX2] - parameters[YY2]) + (t364 - t249) * parameters[XY2]
         + (t251 * parameters[MX2] - t253 * parameters[MY2]);
-    const iiwa14_real_t t394 = iiwa14_sign(dq[1]);
+    const iiwa14_real_t t394 = iiwa14_sign(dq[1]); /* joint j2: coulomb_friction */
     const iiwa14_real_t t395 = IIWA14_C(160.0) * (IIWA14_C(-160.0) * dq[1] * parameters[FV2]
         - t394 * parameters[FC2]) + (t393 + t392);
     const iiwa14_real_t t396 = IIWA14_C(16.0) * input[1] + t395 - t375 * t124 - t378 * t129;

@@ -30,15 +30,15 @@
  */
 #include "iiwa14_private.h"
 
-#if IIWA14_GENERATION != 0x27C72E36UL
+#if IIWA14_GENERATION != 0x1E31C9F2UL
 #error "iiwa14.h and iiwa14_forward_kinematics.c are of different generations: generate the arm again"
 #endif
 
-int iiwa14_forward_kinematics(
+iiwa14_status_t iiwa14_forward_kinematics(
     const iiwa14_real_t q[IIWA14_N_JOINTS],
     iiwa14_real_t out[16 * IIWA14_N_LINKS])
 {
-    int status = IIWA14_STATUS_OK;
+    iiwa14_status_t status = IIWA14_STATUS_OK;
 
     if (!iiwa14_within_joints(q, IIWA14_C(1.0e8))) {
         status |= IIWA14_STATUS_INPUT;
@@ -69,7 +69,7 @@ int iiwa14_forward_kinematics(
     out[10] = IIWA14_C(1.0);
     out[11] = IIWA14_C(0.36);
     out[15] = IIWA14_C(1.0);
-    const iiwa14_real_t t3 = t0 * t2;
+    const iiwa14_real_t t3 = t0 * t2; /* link j2: pose */
     out[16] = t3;
     const iiwa14_real_t t5 = t0 * t4;
     out[17] = -t5;
@@ -83,7 +83,7 @@ int iiwa14_forward_kinematics(
     out[25] = -t2;
     out[27] = IIWA14_C(0.36);
     out[31] = IIWA14_C(1.0);
-    const iiwa14_real_t t10 = t8 * t3 - t1 * t9;
+    const iiwa14_real_t t10 = t8 * t3 - t1 * t9; /* link j3: pose */
     out[32] = t10;
     const iiwa14_real_t t11 = t9 * t3 + t1 * t8;
     out[33] = -t11;
@@ -97,15 +97,15 @@ int iiwa14_forward_kinematics(
     out[38] = t7;
     const iiwa14_real_t t15 = IIWA14_C(0.42) * t7;
     out[39] = t15;
-    const iiwa14_real_t t16 = t4 * t8;
+    const iiwa14_real_t t16 = t4 * t8; /* link j3: velocities by those of the joints */
     out[40] = -t16;
     const iiwa14_real_t t17 = t4 * t9;
     out[41] = t17;
     out[42] = t2;
-    const iiwa14_real_t t18 = IIWA14_C(0.42) * t2 + IIWA14_C(0.36);
+    const iiwa14_real_t t18 = IIWA14_C(0.42) * t2 + IIWA14_C(0.36); /* link j3: pose */
     out[43] = t18;
     out[47] = IIWA14_C(1.0);
-    const iiwa14_real_t t21 = t19 * t10 + t20 * t5;
+    const iiwa14_real_t t21 = t19 * t10 + t20 * t5; /* link j4: pose */
     out[48] = t21;
     const iiwa14_real_t t22 = t19 * t5 - t20 * t10;
     out[49] = t22;
@@ -117,14 +117,14 @@ int iiwa14_forward_kinematics(
     out[53] = t24;
     out[54] = -t14;
     out[55] = t15;
-    const iiwa14_real_t t25 = t2 * t20 - t19 * t16;
+    const iiwa14_real_t t25 = t2 * t20 - t19 * t16; /* link j4: velocities by those of the joints */
     out[56] = t25;
     const iiwa14_real_t t26 = t20 * t16 + t2 * t19;
     out[57] = t26;
     out[58] = -t17;
     out[59] = t18;
     out[63] = IIWA14_C(1.0);
-    const iiwa14_real_t t29 = t27 * t21 - t28 * t11;
+    const iiwa14_real_t t29 = t27 * t21 - t28 * t11; /* link j5: pose */
     out[64] = t29;
     const iiwa14_real_t t30 = t28 * t21 + t27 * t11;
     out[65] = -t30;
@@ -138,15 +138,15 @@ int iiwa14_forward_kinematics(
     out[70] = t24;
     const iiwa14_real_t t34 = t15 + IIWA14_C(0.4) * t24;
     out[71] = t34;
-    const iiwa14_real_t t35 = t27 * t25 + t28 * t17;
+    const iiwa14_real_t t35 = t27 * t25 + t28 * t17; /* link j5: velocities by those of the joints */
     out[72] = t35;
     const iiwa14_real_t t36 = t27 * t17 - t28 * t25;
     out[73] = t36;
     out[74] = t26;
-    const iiwa14_real_t t37 = t18 + IIWA14_C(0.4) * t26;
+    const iiwa14_real_t t37 = t18 + IIWA14_C(0.4) * t26; /* link j5: pose */
     out[75] = t37;
     out[79] = IIWA14_C(1.0);
-    const iiwa14_real_t t40 = t38 * t29 - t39 * t22;
+    const iiwa14_real_t t40 = t38 * t29 - t39 * t22; /* link j6: pose */
     out[80] = t40;
     const iiwa14_real_t t41 = t39 * t29 + t38 * t22;
     out[81] = -t41;
@@ -158,7 +158,7 @@ int iiwa14_forward_kinematics(
     out[85] = -t43;
     out[86] = t33;
     out[87] = t34;
-    const iiwa14_real_t t44 = t38 * t35 - t39 * t26;
+    const iiwa14_real_t t44 = t38 * t35 - t39 * t26; /* link j6: velocities by those of the joints */
     out[88] = t44;
     const iiwa14_real_t t45 = t39 * t35 + t38 * t26;
     out[89] = -t45;

@@ -89,11 +89,11 @@
  */
 #include "iiwa14_private.h"
 
-#if IIWA14_GENERATION != 0x27C72E36UL
+#if IIWA14_GENERATION != 0x1E31C9F2UL
 #error "iiwa14.h and iiwa14_gravity.c are of different generations: generate the arm again"
 #endif
 
-int iiwa14_gravity(
+iiwa14_status_t iiwa14_gravity(
     const iiwa14_real_t q[IIWA14_N_JOINTS],
     const iiwa14_real_t parameters[IIWA14_N_PARAMETERS],
     iiwa14_real_t out[IIWA14_N_JOINTS])
@@ -102,7 +102,7 @@ int iiwa14_gravity(
         XZ4, YZ4, ZZ4R, MX4, MY4R, XX5R, XY5, XZ5, YZ5, ZZ5R, MX5, MY5R, XX6R, XY6, XZ6, YZ6, ZZ6R, MX6, MY6R,
         XX7R, XY7, XZ7R, YZ7R, ZZ7, MX7, MY7, FV1, FC1, FV2, FC2, FV3, FC3, IA3, FV4, FC4, IA4, FV5, FC5, IA5,
         FV6, FC6, IA6, FV7, FC7, IA7 };
-    int status = IIWA14_STATUS_OK;
+    iiwa14_status_t status = IIWA14_STATUS_OK;
 
     if (!iiwa14_within_joints(q, IIWA14_C(1.0e8))
         || !IIWA14_PARAMETERS_USABLE(iiwa14_within(parameters, 62, IIWA14_C(1.0e18)))) {
@@ -125,34 +125,41 @@ int iiwa14_gravity(
     IIWA14_SINCOS(q[5], &t14, &t16);
     iiwa14_real_t t21, t19;
     IIWA14_SINCOS(q[6], &t21, &t19);
-    const iiwa14_real_t t1 = IIWA14_C(9.81) * t0;
-    const iiwa14_real_t t3 = t2 * t1;
-    const iiwa14_real_t t6 = IIWA14_C(-9.81) * t5;
-    const iiwa14_real_t t8 = t4 * t3 + t7 * t6;
-    const iiwa14_real_t t11 = t10 * t1;
-    const iiwa14_real_t t13 = t9 * t8 - t12 * t11;
-    const iiwa14_real_t t15 = t7 * t3 - t4 * t6;
-    const iiwa14_real_t t17 = t14 * t13 - t16 * t15;
-    const iiwa14_real_t t18 = parameters[MY7] * t17;
+    const iiwa14_real_t t1 = IIWA14_C(9.81) * t0; /* link j2: motion */
+    const iiwa14_real_t t3 = t2 * t1; /* link j3: motion */
+    const iiwa14_real_t t6 = IIWA14_C(-9.81) * t5; /* link j2: motion */
+    const iiwa14_real_t t8 = t4 * t3 + t7 * t6; /* link j4: motion */
+    const iiwa14_real_t t11 = t10 * t1; /* link j3: motion */
+    const iiwa14_real_t t13 = t9 * t8 - t12 * t11; /* link j5: motion */
+    const iiwa14_real_t t15 = t7 * t3 - t4 * t6; /* link j4: motion */
+    const iiwa14_real_t t17 = t14 * t13 - t16 * t15; /* link j6: motion */
+    const iiwa14_real_t t18 = parameters[MY7] * t17; /* link j7: force and moment */
     const iiwa14_real_t t20 = parameters[MX7] * t17;
-    const iiwa14_real_t t22 = t12 * t8 + t9 * t11;
+    const iiwa14_real_t t22 = t12 * t8 + t9 * t11; /* link j5: motion */
+    /* link j7: what it passes on */
     const iiwa14_real_t t23 = parameters[MY6R] * t22 - (t19 * t18 + t21 * t20);
-    const iiwa14_real_t t24 = t16 * t13 + t14 * t15;
+    const iiwa14_real_t t24 = t16 * t13 + t14 * t15; /* link j6: motion */
+    /* link j7: force and moment */
     const iiwa14_real_t t25 = parameters[MX7] * (t21 * t24 + t19 * t22) + parameters[MY7] * (t19 * t24
         - t21 * t22);
-    const iiwa14_real_t t26 = parameters[MX6] * t22 + t25;
+    const iiwa14_real_t t26 = parameters[MX6] * t22 + t25; /* link j7: what it passes on */
+    /* link j6: what it passes on */
     const iiwa14_real_t t27 = parameters[MY5R] * t15 + (t16 * t23 + t14 * t26);
+    /* link j7: what it passes on */
     const iiwa14_real_t t28 = parameters[MX6] * t17 + parameters[MY6R] * t24 + (t19 * t20 - t21 * t18);
-    const iiwa14_real_t t29 = parameters[MX5] * t15 - t28;
-    const iiwa14_real_t t30 = t9 * t27 + t12 * t29 - parameters[MY4R] * t11;
+    const iiwa14_real_t t29 = parameters[MX5] * t15 - t28; /* link j6: what it passes on */
+    const iiwa14_real_t t30 = t9 * t27 + t12 * t29 - parameters[MY4R] * t11; /* link j5: what it passes on */
+    /* link j6: what it passes on */
     const iiwa14_real_t t31 = parameters[MX5] * t22 + parameters[MY5R] * t13 + (t16 * t26 - t14 * t23);
-    const iiwa14_real_t t32 = parameters[MX4] * t11 + t31;
-    const iiwa14_real_t t33 = parameters[MY3R] * t6 + (t7 * t32 - t4 * t30);
+    const iiwa14_real_t t32 = parameters[MX4] * t11 + t31; /* link j5: what it passes on */
+    const iiwa14_real_t t33 = parameters[MY3R] * t6 + (t7 * t32 - t4 * t30); /* link j4: what it passes on */
+    /* link j5: what it passes on */
     const iiwa14_real_t t34 = t12 * t27 - t9 * t29 - (parameters[MX4] * t15 + parameters[MY4R] * t8);
-    const iiwa14_real_t t35 = parameters[MX3] * t6 + t34;
+    const iiwa14_real_t t35 = parameters[MX3] * t6 + t34; /* link j4: what it passes on */
     const iiwa14_real_t t36 = parameters[MX3] * t11 + parameters[MY3R] * t3 + (t7 * t30 + t4 * t32);
-    const iiwa14_real_t t37 = t0 * (t2 * t33 + t10 * t35) + t5 * t36;
+    const iiwa14_real_t t37 = t0 * (t2 * t33 + t10 * t35) + t5 * t36; /* link j2: what it passes on */
     out[0] = IIWA14_C(0.0625) * t37;
+    /* link j3: what it passes on */
     const iiwa14_real_t t38 = parameters[MX2] * t6 + parameters[MY2R] * t1 + (t2 * t35 - t10 * t33);
     out[1] = IIWA14_C(0.0625) * t38;
     out[2] = IIWA14_C(0.0625) * t36;

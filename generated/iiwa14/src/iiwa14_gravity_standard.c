@@ -118,11 +118,11 @@
  */
 #include "iiwa14_private.h"
 
-#if IIWA14_GENERATION != 0x27C72E36UL
+#if IIWA14_GENERATION != 0x1E31C9F2UL
 #error "iiwa14.h and iiwa14_gravity_standard.c are of different generations: generate the arm again"
 #endif
 
-int iiwa14_gravity_standard(
+iiwa14_status_t iiwa14_gravity_standard(
     const iiwa14_real_t q[IIWA14_N_JOINTS],
     const iiwa14_real_t parameters[IIWA14_N_STANDARD_PARAMETERS],
     iiwa14_real_t out[IIWA14_N_JOINTS])
@@ -132,7 +132,7 @@ int iiwa14_gravity_standard(
         XX5, XY5, XZ5, YY5, YZ5, ZZ5, MX5, MY5, MZ5, M5, XX6, XY6, XZ6, YY6, YZ6, ZZ6, MX6, MY6, MZ6, M6, XX7,
         XY7, XZ7, YY7, YZ7, ZZ7, MX7, MY7, MZ7, M7, FV1, FC1, IA1, FV2, FC2, IA2, FV3, FC3, IA3, FV4, FC4,
         IA4, FV5, FC5, IA5, FV6, FC6, IA6, FV7, FC7, IA7 };
-    int status = IIWA14_STATUS_OK;
+    iiwa14_status_t status = IIWA14_STATUS_OK;
 
     if (!iiwa14_within_joints(q, IIWA14_C(1.0e8))
         || !IIWA14_PARAMETERS_USABLE(iiwa14_within(parameters, 91, IIWA14_C(1.0e18)))) {
@@ -155,53 +155,66 @@ int iiwa14_gravity_standard(
     IIWA14_SINCOS(q[5], &t14, &t16);
     iiwa14_real_t t19, t21;
     IIWA14_SINCOS(q[6], &t19, &t21);
-    const iiwa14_real_t t1 = IIWA14_C(9.81) * t0;
-    const iiwa14_real_t t3 = t2 * t1;
-    const iiwa14_real_t t6 = IIWA14_C(-9.81) * t5;
-    const iiwa14_real_t t8 = t4 * t3 + t7 * t6;
-    const iiwa14_real_t t11 = t10 * t1;
-    const iiwa14_real_t t13 = t9 * t8 - t12 * t11;
-    const iiwa14_real_t t15 = t4 * t6 - t7 * t3;
-    const iiwa14_real_t t17 = t14 * t13 + t16 * t15;
+    const iiwa14_real_t t1 = IIWA14_C(9.81) * t0; /* link j2: motion */
+    const iiwa14_real_t t3 = t2 * t1; /* link j3: motion */
+    const iiwa14_real_t t6 = IIWA14_C(-9.81) * t5; /* link j2: motion */
+    const iiwa14_real_t t8 = t4 * t3 + t7 * t6; /* link j4: motion */
+    const iiwa14_real_t t11 = t10 * t1; /* link j3: motion */
+    const iiwa14_real_t t13 = t9 * t8 - t12 * t11; /* link j5: motion */
+    const iiwa14_real_t t15 = t4 * t6 - t7 * t3; /* link j4: motion */
+    const iiwa14_real_t t17 = t14 * t13 + t16 * t15; /* link j6: motion */
     const iiwa14_real_t t18 = t16 * t13 - t14 * t15;
-    const iiwa14_real_t t20 = t12 * t8 + t9 * t11;
-    const iiwa14_real_t t22 = t19 * t18 + t21 * t20;
-    const iiwa14_real_t t23 = t17 * parameters[MY7] + t22 * parameters[MZ7];
-    const iiwa14_real_t t24 = t21 * t18 - t19 * t20;
-    const iiwa14_real_t t25 = t17 * parameters[MX7] - t24 * parameters[MZ7];
+    const iiwa14_real_t t20 = t12 * t8 + t9 * t11; /* link j5: motion */
+    const iiwa14_real_t t22 = t19 * t18 + t21 * t20; /* link j7: motion */
+    const iiwa14_real_t t23 = t17 * parameters[MY7] + t22 * parameters[MZ7]; /* link j7: force and moment */
+    const iiwa14_real_t t24 = t21 * t18 - t19 * t20; /* link j7: motion */
+    const iiwa14_real_t t25 = t17 * parameters[MX7] - t24 * parameters[MZ7]; /* link j7: force and moment */
     const iiwa14_real_t t26 = t24 * parameters[M7];
     const iiwa14_real_t t27 = t22 * parameters[M7];
-    const iiwa14_real_t t28 = t19 * t26 - t21 * t27;
+    const iiwa14_real_t t28 = t19 * t26 - t21 * t27; /* link j7: what it passes on */
     const iiwa14_real_t t29 = t20 * parameters[MY6] - t17 * parameters[MZ6] - (t21 * t23 + t19 * t25
         - IIWA14_C(0.126) * t28);
-    const iiwa14_real_t t30 = t22 * parameters[MX7] + t24 * parameters[MY7];
+    const iiwa14_real_t t30 = t22 * parameters[MX7] + t24 * parameters[MY7]; /* link j7: force and moment */
+    /* link j7: what it passes on */
     const iiwa14_real_t t31 = t18 * parameters[MZ6] + t20 * parameters[MX6] + t30;
+    /* link j6: what it passes on */
     const iiwa14_real_t t32 = t16 * t29 + t14 * t31 - (t15 * parameters[MY5] + t20 * parameters[MZ5]);
-    const iiwa14_real_t t33 = t21 * t26 + t19 * t27;
+    const iiwa14_real_t t33 = t21 * t26 + t19 * t27; /* link j7: what it passes on */
     const iiwa14_real_t t34 = t17 * parameters[MX6] + t18 * parameters[MY6] + (t21 * t25 - t19 * t23
         + IIWA14_C(-0.126) * t33);
+    /* link j6: what it passes on */
     const iiwa14_real_t t35 = t13 * parameters[MZ5] - t15 * parameters[MX5] - t34;
-    const iiwa14_real_t t36 = t18 * parameters[M6] + t33;
+    const iiwa14_real_t t36 = t18 * parameters[M6] + t33; /* link j7: what it passes on */
     const iiwa14_real_t t37 = t17 * parameters[M6] + t17 * parameters[M7];
-    const iiwa14_real_t t38 = t13 * parameters[M5] + (t16 * t36 + t14 * t37);
+    const iiwa14_real_t t38 = t13 * parameters[M5] + (t16 * t36 + t14 * t37); /* link j6: what it passes on */
     const iiwa14_real_t t39 = t28 - t20 * parameters[M6] - t20 * parameters[M5];
-    const iiwa14_real_t t40 = t12 * t38 + t9 * t39;
+    const iiwa14_real_t t40 = t12 * t38 + t9 * t39; /* link j5: what it passes on */
     const iiwa14_real_t t41 = t15 * parameters[MZ4] - t11 * parameters[MY4] + (t9 * t32 + t12 * t35
         + IIWA14_C(0.4) * t40);
+    /* link j6: what it passes on */
     const iiwa14_real_t t42 = t20 * parameters[MX5] + t13 * parameters[MY5] + (t16 * t31 - t14 * t29);
+    /* link j5: what it passes on */
     const iiwa14_real_t t43 = t11 * parameters[MX4] - t8 * parameters[MZ4] + t42;
+    /* link j4: what it passes on */
     const iiwa14_real_t t44 = t6 * parameters[MY3] + t11 * parameters[MZ3] + (t7 * t43 - t4 * t41);
-    const iiwa14_real_t t45 = t12 * t39 - t9 * t38;
+    const iiwa14_real_t t45 = t12 * t39 - t9 * t38; /* link j5: what it passes on */
     const iiwa14_real_t t46 = t15 * parameters[MX4] - t8 * parameters[MY4] + (t12 * t32 - t9 * t35
         + IIWA14_C(0.4) * t45);
+    /* link j4: what it passes on */
     const iiwa14_real_t t47 = t6 * parameters[MX3] - t3 * parameters[MZ3] + t46;
+    /* link j5: what it passes on */
     const iiwa14_real_t t48 = t15 * parameters[M4] + (t15 * parameters[M5] + (t16 * t37 - t14 * t36));
+    /* link j4: what it passes on */
     const iiwa14_real_t t49 = t4 * (t45 - t8 * parameters[M4]) + t7 * t48 - t3 * parameters[M3];
     const iiwa14_real_t t50 = t11 * parameters[M3] + (t11 * parameters[M4] - t40);
+    /* link j3: what it passes on */
     const iiwa14_real_t t51 = t2 * t44 + t10 * t47 + IIWA14_C(0.42) * (t10 * t49 + t2 * t50);
+    /* link j4: what it passes on */
     const iiwa14_real_t t52 = t11 * parameters[MX3] + t3 * parameters[MY3] + (t7 * t41 + t4 * t43);
+    /* link j2: what it passes on */
     const iiwa14_real_t t53 = t0 * (t6 * parameters[MZ2] + t51) + t5 * (t1 * parameters[MZ2] + t52);
     out[0] = IIWA14_C(0.0625) * t53;
+    /* link j3: what it passes on */
     const iiwa14_real_t t54 = t2 * t47 - t10 * t44 + IIWA14_C(0.42) * (t2 * t49 - t10 * t50);
     out[1] = IIWA14_C(0.0625) * (t6 * parameters[MX2] + t1 * parameters[MY2] + t54);
     out[2] = IIWA14_C(0.0625) * t52;

@@ -6,7 +6,7 @@
  * Arm iiwa14, description 4f01a5afe35e97fd.
  * SPDX-License-Identifier: 0BSD
  *
- * Operations: 620 (332 mul, 288 add, 0 neg), 12 trig, 7 other.
+ * Operations: 620 (332 mul, 288 add, 0 neg), 12 trig, 7 other calls (sign, select and the like).
  *
  * @param[in]   q           [7]   [rad]      joint coordinates; norm at most 10000
  * @param[in]   dq          [7]   [rad/s]    joint velocities; norm at most 100000
@@ -91,11 +91,11 @@
  */
 #include "iiwa14_private.h"
 
-#if IIWA14_GENERATION != 0x27C72E36UL
+#if IIWA14_GENERATION != 0x1E31C9F2UL
 #error "iiwa14.h and iiwa14_inverse_dynamics.c are of different generations: generate the arm again"
 #endif
 
-int iiwa14_inverse_dynamics(
+iiwa14_status_t iiwa14_inverse_dynamics(
     const iiwa14_real_t q[IIWA14_N_JOINTS],
     const iiwa14_real_t dq[IIWA14_N_JOINTS],
     const iiwa14_real_t ddq[IIWA14_N_JOINTS],
@@ -106,7 +106,7 @@ int iiwa14_inverse_dynamics(
         XZ4, YZ4, ZZ4R, MX4, MY4R, XX5R, XY5, XZ5, YZ5, ZZ5R, MX5, MY5R, XX6R, XY6, XZ6, YZ6, ZZ6R, MX6, MY6R,
         XX7R, XY7, XZ7R, YZ7R, ZZ7, MX7, MY7, FV1, FC1, FV2, FC2, FV3, FC3, IA3, FV4, FC4, IA4, FV5, FC5, IA5,
         FV6, FC6, IA6, FV7, FC7, IA7 };
-    int status = IIWA14_STATUS_OK;
+    iiwa14_status_t status = IIWA14_STATUS_OK;
 
     if (!iiwa14_within_joints(q, IIWA14_C(1.0e8))
         || !iiwa14_within_joints(dq, IIWA14_C(1.0e10))
@@ -131,66 +131,66 @@ int iiwa14_inverse_dynamics(
     IIWA14_SINCOS(q[5], &t39, &t56);
     iiwa14_real_t t71, t63;
     IIWA14_SINCOS(q[6], &t71, &t63);
-    const iiwa14_real_t t1 = t0 * dq[0];
-    const iiwa14_real_t t4 = t2 * t1 - t3 * dq[1];
-    const iiwa14_real_t t7 = t6 * dq[0];
-    const iiwa14_real_t t8 = dq[2] + t7;
-    const iiwa14_real_t t10 = t5 * t4 - t9 * t8;
-    const iiwa14_real_t t12 = t3 * t1 + t2 * dq[1];
-    const iiwa14_real_t t13 = dq[3] - t12;
-    const iiwa14_real_t t15 = t11 * t10 + t14 * t13;
+    const iiwa14_real_t t1 = t0 * dq[0]; /* link j2: motion */
+    const iiwa14_real_t t4 = t2 * t1 - t3 * dq[1]; /* link j3: motion */
+    const iiwa14_real_t t7 = t6 * dq[0]; /* link j2: motion */
+    const iiwa14_real_t t8 = dq[2] + t7; /* link j3: motion */
+    const iiwa14_real_t t10 = t5 * t4 - t9 * t8; /* link j4: motion */
+    const iiwa14_real_t t12 = t3 * t1 + t2 * dq[1]; /* link j3: motion */
+    const iiwa14_real_t t13 = dq[3] - t12; /* link j4: motion */
+    const iiwa14_real_t t15 = t11 * t10 + t14 * t13; /* link j5: motion */
     const iiwa14_real_t t16 = t11 * t13 - t14 * t10;
     const iiwa14_real_t t17 = t15 * t16;
-    const iiwa14_real_t t18 = t4 * t12;
-    const iiwa14_real_t t19 = dq[1] * t1;
+    const iiwa14_real_t t18 = t4 * t12; /* link j3: motion */
+    const iiwa14_real_t t19 = dq[1] * t1; /* link j2: motion */
     const iiwa14_real_t t20 = t6 * ddq[0];
     const iiwa14_real_t t21 = t20 - t19;
-    const iiwa14_real_t t22 = ddq[2] + t21;
-    const iiwa14_real_t t23 = t18 + t22;
-    const iiwa14_real_t t24 = t1 * t7;
-    const iiwa14_real_t t25 = t24 - ddq[1];
-    const iiwa14_real_t t26 = dq[1] * t7;
+    const iiwa14_real_t t22 = ddq[2] + t21; /* link j3: motion */
+    const iiwa14_real_t t23 = t18 + t22; /* link j4: motion */
+    const iiwa14_real_t t24 = t1 * t7; /* link j2: motion */
+    const iiwa14_real_t t25 = t24 - ddq[1]; /* link j3: motion */
+    const iiwa14_real_t t26 = dq[1] * t7; /* link j2: motion */
     const iiwa14_real_t t27 = t0 * ddq[0];
     const iiwa14_real_t t28 = t26 + t27;
-    const iiwa14_real_t t29 = t26 + t28;
+    const iiwa14_real_t t29 = t26 + t28; /* link j3: motion */
     const iiwa14_real_t t30 = t3 * t25 + t2 * t29;
     const iiwa14_real_t t31 = t12 * t8;
     const iiwa14_real_t t32 = t30 - t31;
-    const iiwa14_real_t t33 = t32 - t31;
+    const iiwa14_real_t t33 = t32 - t31; /* link j4: motion */
     const iiwa14_real_t t34 = t5 * t23 + t9 * t33;
     const iiwa14_real_t t35 = t10 * t13;
     const iiwa14_real_t t36 = t35 + t34;
-    const iiwa14_real_t t37 = ddq[4] + t36;
-    const iiwa14_real_t t38 = t37 - t17;
-    const iiwa14_real_t t40 = t9 * t4 + t5 * t8;
+    const iiwa14_real_t t37 = ddq[4] + t36; /* link j5: motion */
+    const iiwa14_real_t t38 = t37 - t17; /* link j6: motion */
+    const iiwa14_real_t t40 = t9 * t4 + t5 * t8; /* link j4: motion */
     const iiwa14_real_t t41 = t10 * t40;
-    const iiwa14_real_t t42 = t2 * t25 - t3 * t29;
+    const iiwa14_real_t t42 = t2 * t25 - t3 * t29; /* link j3: motion */
     const iiwa14_real_t t43 = t4 * t8;
     const iiwa14_real_t t44 = t42 - t43;
-    const iiwa14_real_t t45 = ddq[3] + t44;
-    const iiwa14_real_t t46 = t41 + t45;
-    const iiwa14_real_t t47 = t5 * t33 - t9 * t23;
+    const iiwa14_real_t t45 = ddq[3] + t44; /* link j4: motion */
+    const iiwa14_real_t t46 = t41 + t45; /* link j5: motion */
+    const iiwa14_real_t t47 = t5 * t33 - t9 * t23; /* link j4: motion */
     const iiwa14_real_t t48 = t40 * t13;
     const iiwa14_real_t t49 = t47 - t48;
-    const iiwa14_real_t t50 = t49 - t48;
+    const iiwa14_real_t t50 = t49 - t48; /* link j5: motion */
     const iiwa14_real_t t51 = t14 * t46 + t11 * t50;
     const iiwa14_real_t t52 = dq[4] + t40;
     const iiwa14_real_t t53 = t16 * t52;
     const iiwa14_real_t t54 = t53 + t51;
-    const iiwa14_real_t t55 = t53 + t54;
+    const iiwa14_real_t t55 = t53 + t54; /* link j6: motion */
     const iiwa14_real_t t57 = t39 * t38 + t56 * t55;
     const iiwa14_real_t t58 = t56 * t52 - t39 * t15;
     const iiwa14_real_t t59 = t16 - dq[5];
     const iiwa14_real_t t60 = t58 * t59;
     const iiwa14_real_t t61 = t57 - t60;
-    const iiwa14_real_t t62 = t61 - t60;
-    const iiwa14_real_t t64 = t14 * t50 - t11 * t46;
+    const iiwa14_real_t t62 = t61 - t60; /* link j7: motion */
+    const iiwa14_real_t t64 = t14 * t50 - t11 * t46; /* link j5: motion */
     const iiwa14_real_t t65 = t15 * t52;
     const iiwa14_real_t t66 = t65 + t64;
-    const iiwa14_real_t t67 = ddq[5] + t66;
+    const iiwa14_real_t t67 = ddq[5] + t66; /* link j6: motion */
     const iiwa14_real_t t68 = t56 * t15 + t39 * t52;
     const iiwa14_real_t t69 = t68 * t58;
-    const iiwa14_real_t t70 = t67 - t69;
+    const iiwa14_real_t t70 = t67 - t69; /* link j7: motion */
     const iiwa14_real_t t72 = t71 * t70 - t63 * t62;
     const iiwa14_real_t t73 = t71 * t68 - t63 * t59;
     const iiwa14_real_t t74 = dq[6] + t58;
@@ -199,172 +199,211 @@ int iiwa14_inverse_dynamics(
     const iiwa14_real_t t77 = t63 * t70 + t71 * t62;
     const iiwa14_real_t t78 = t63 * t68 + t71 * t59;
     const iiwa14_real_t t79 = t78 * t74;
-    const iiwa14_real_t t80 = t79 + (t79 + t77);
-    const iiwa14_real_t t81 = t39 * t55 - t56 * t38;
+    const iiwa14_real_t t80 = t79 + (t79 + t77); /* link j7: force and moment */
+    const iiwa14_real_t t81 = t39 * t55 - t56 * t38; /* link j6: motion */
     const iiwa14_real_t t82 = t68 * t59;
     const iiwa14_real_t t83 = t81 - t82;
-    const iiwa14_real_t t84 = ddq[6] - t83;
+    const iiwa14_real_t t84 = ddq[6] - t83; /* link j7: motion */
     const iiwa14_real_t t85 = t78 * t73;
-    const iiwa14_real_t t86 = t85 - t84;
+    const iiwa14_real_t t86 = t85 - t84; /* link j7: force and moment */
     const iiwa14_real_t t87 = parameters[ZZ7] * t75 + parameters[XX7R] * t76 + parameters[XY7] * t80
         - parameters[XZ7R] * t86;
-    const iiwa14_real_t t88 = t73 * t73;
+    const iiwa14_real_t t88 = t73 * t73; /* link j7: motion */
     const iiwa14_real_t t89 = t74 * t74;
-    const iiwa14_real_t t90 = IIWA14_C(9.81) * t0;
-    const iiwa14_real_t t91 = t90 + IIWA14_C(0.42) * t25;
+    const iiwa14_real_t t90 = IIWA14_C(9.81) * t0; /* link j2: motion */
+    const iiwa14_real_t t91 = t90 + IIWA14_C(0.42) * t25; /* link j3: motion */
     const iiwa14_real_t t92 = IIWA14_C(0.42) * t29;
     const iiwa14_real_t t93 = t2 * t91 - t3 * t92;
-    const iiwa14_real_t t94 = t1 * t1;
+    const iiwa14_real_t t94 = t1 * t1; /* link j2: motion */
     const iiwa14_real_t t95 = dq[1] * dq[1];
     const iiwa14_real_t t96 = IIWA14_C(-9.81) * t6;
-    const iiwa14_real_t t97 = t96 + IIWA14_C(0.42) * (t95 + t94);
-    const iiwa14_real_t t98 = t9 * t97 + t5 * t93;
-    const iiwa14_real_t t99 = t98 + IIWA14_C(0.4) * t46;
-    const iiwa14_real_t t100 = t3 * t91 + t2 * t92;
-    const iiwa14_real_t t101 = t100 - IIWA14_C(-0.4) * t50;
+    const iiwa14_real_t t97 = t96 + IIWA14_C(0.42) * (t95 + t94); /* link j3: motion */
+    const iiwa14_real_t t98 = t9 * t97 + t5 * t93; /* link j4: motion */
+    const iiwa14_real_t t99 = t98 + IIWA14_C(0.4) * t46; /* link j5: motion */
+    const iiwa14_real_t t100 = t3 * t91 + t2 * t92; /* link j3: motion */
+    const iiwa14_real_t t101 = t100 - IIWA14_C(-0.4) * t50; /* link j5: motion */
     const iiwa14_real_t t102 = t11 * t99 - t14 * t101;
-    const iiwa14_real_t t103 = t10 * t10;
+    const iiwa14_real_t t103 = t10 * t10; /* link j4: motion */
     const iiwa14_real_t t104 = t13 * t13;
-    const iiwa14_real_t t105 = t103 + t104;
-    const iiwa14_real_t t106 = t9 * t93 - t5 * t97;
-    const iiwa14_real_t t107 = IIWA14_C(-0.4) * t105 + t106;
-    const iiwa14_real_t t108 = t39 * t102 - t56 * t107;
+    const iiwa14_real_t t105 = t103 + t104; /* link j5: motion */
+    const iiwa14_real_t t106 = t9 * t93 - t5 * t97; /* link j4: motion */
+    const iiwa14_real_t t107 = IIWA14_C(-0.4) * t105 + t106; /* link j5: motion */
+    const iiwa14_real_t t108 = t39 * t102 - t56 * t107; /* link j6: motion */
+    /* link j7: force and moment */
     const iiwa14_real_t t109 = parameters[YZ7R] * (t88 - t89) + t87 - parameters[MY7] * t108;
     const iiwa14_real_t t110 = t75 + t76;
     const iiwa14_real_t t111 = t85 + t84;
     const iiwa14_real_t t112 = t79 * (parameters[ZZ7] - parameters[XX7R]) + parameters[XY7] * t110
         + parameters[YZ7R] * t111;
-    const iiwa14_real_t t113 = t78 * t78;
+    const iiwa14_real_t t113 = t78 * t78; /* link j7: motion */
+    /* link j7: force and moment */
     const iiwa14_real_t t114 = parameters[XZ7R] * (t89 - t113) + t112 + parameters[MX7] * t108;
-    const iiwa14_real_t t115 = t83 - t82;
+    const iiwa14_real_t t115 = t83 - t82; /* link j7: motion */
     const iiwa14_real_t t116 = t69 + t67;
+    /* link j6: force and moment */
     const iiwa14_real_t t117 = parameters[ZZ6R] * t60 - parameters[XX6R] * t61 + parameters[XY6] * t115
         + parameters[XZ6] * t116;
-    const iiwa14_real_t t118 = t58 * t58;
+    const iiwa14_real_t t118 = t58 * t58; /* link j6: motion */
     const iiwa14_real_t t119 = t59 * t59;
-    const iiwa14_real_t t120 = t14 * t99 + t11 * t101;
+    const iiwa14_real_t t120 = t14 * t99 + t11 * t101; /* link j5: motion */
+    /* link j7: what it passes on */
     const iiwa14_real_t t121 = parameters[YZ6] * (t118 - t119) + t117 + parameters[MY6R] * t120 + (t63 * t109
         - t71 * t114);
+    /* link j7: force and moment */
     const iiwa14_real_t t122 = parameters[XX7R] * t85 + parameters[ZZ7] * t84 + parameters[YZ7R] * t77
         + parameters[XZ7R] * t72;
-    const iiwa14_real_t t123 = t56 * t102 + t39 * t107;
+    const iiwa14_real_t t123 = t56 * t102 + t39 * t107; /* link j6: motion */
+    /* link j7: force and moment */
     const iiwa14_real_t t124 = parameters[MX7] * (t71 * t123 + t63 * t120) + parameters[MY7] * (t63 * t123
         - t71 * t120);
     const iiwa14_real_t t125 = parameters[XY7] * (t113 - t88) + t122 + t124;
+    /* link j6: force and moment */
     const iiwa14_real_t t126 = parameters[XY6] * t62 - t82 * (parameters[XX6R] - parameters[ZZ6R])
         - parameters[YZ6] * t70;
-    const iiwa14_real_t t127 = t68 * t68;
+    const iiwa14_real_t t127 = t68 * t68; /* link j6: motion */
+    /* link j7: what it passes on */
     const iiwa14_real_t t128 = parameters[XZ6] * (t127 - t119) + t126 + parameters[MX6] * t120 + t125;
-    const iiwa14_real_t t129 = t65 + t66;
+    const iiwa14_real_t t129 = t65 + t66; /* link j6: motion */
     const iiwa14_real_t t130 = t17 + t37;
+    /* link j5: force and moment */
     const iiwa14_real_t t131 = parameters[XY5] * t129 - (parameters[ZZ5R] * t53 + parameters[XX5R] * t54)
         + parameters[XZ5] * t130;
-    const iiwa14_real_t t132 = t16 * t16;
+    const iiwa14_real_t t132 = t16 * t16; /* link j5: motion */
     const iiwa14_real_t t133 = t52 * t52;
+    /* link j6: what it passes on */
     const iiwa14_real_t t134 = parameters[YZ5] * (t132 - t133) + t131 + parameters[MY5R] * t107 + (t56 * t121
         + t39 * t128);
+    /* link j6: force and moment */
     const iiwa14_real_t t135 = parameters[ZZ6R] * t67 - parameters[XX6R] * t69 + parameters[YZ6] * t81
         - parameters[XZ6] * t57;
     const iiwa14_real_t t136 = parameters[XY6] * (t127 - t118) + t135 + (parameters[MX6] * t108
         + parameters[MY6R] * t123);
-    const iiwa14_real_t t137 = t136 + (t71 * t109 + t63 * t114);
+    const iiwa14_real_t t137 = t136 + (t71 * t109 + t63 * t114); /* link j7: what it passes on */
+    /* link j5: force and moment */
     const iiwa14_real_t t138 = t65 * (parameters[XX5R] - parameters[ZZ5R]) + parameters[XY5] * t55
         - parameters[YZ5] * t38;
-    const iiwa14_real_t t139 = t15 * t15;
+    const iiwa14_real_t t139 = t15 * t15; /* link j5: motion */
+    /* link j6: what it passes on */
     const iiwa14_real_t t140 = parameters[XZ5] * (t139 - t133) + t138 + parameters[MX5] * t107 - t137;
+    /* link j7: force and moment */
     const iiwa14_real_t t141 = parameters[MX7] * (t88 + t89) + parameters[MY7] * t111;
     const iiwa14_real_t t142 = parameters[MY7] * (t113 + t89) + parameters[MX7] * t86;
+    /* link j7: what it passes on */
     const iiwa14_real_t t143 = t71 * t142 - t63 * t141 - (parameters[MX6] * (t118 + t119)
         + parameters[MY6R] * t70);
     const iiwa14_real_t t144 = parameters[MX6] * t116 - parameters[MY6R] * (t127 + t119)
         + (parameters[MX7] * t80 - parameters[MY7] * t110);
+    /* link j6: what it passes on */
     const iiwa14_real_t t145 = parameters[MX5] * (t132 + t133) + parameters[MY5R] * t38 + (t39 * t144
         - t56 * t143);
+    /* link j7: what it passes on */
     const iiwa14_real_t t146 = parameters[MX6] * t115 + parameters[MY6R] * t62 + (t71 * t141 + t63 * t142);
+    /* link j6: what it passes on */
     const iiwa14_real_t t147 = parameters[MY5R] * (t139 + t133) - parameters[MX5] * t130 + t146;
-    const iiwa14_real_t t148 = t14 * t145 + t11 * t147;
-    const iiwa14_real_t t149 = t35 + t36;
+    const iiwa14_real_t t148 = t14 * t145 + t11 * t147; /* link j5: what it passes on */
+    const iiwa14_real_t t149 = t35 + t36; /* link j5: motion */
     const iiwa14_real_t t150 = t41 - t45;
+    /* link j4: force and moment */
     const iiwa14_real_t t151 = parameters[ZZ4R] * t48 - parameters[XX4R] * t49 + parameters[XY4] * t149
         - parameters[XZ4] * t150;
-    const iiwa14_real_t t152 = t40 * t40;
+    const iiwa14_real_t t152 = t40 * t40; /* link j4: motion */
+    /* link j5: what it passes on */
     const iiwa14_real_t t153 = parameters[YZ4] * (t152 - t104) + t151 - parameters[MY4R] * t100 + (t11 * t134
         + t14 * t140 + IIWA14_C(0.4) * t148);
+    /* link j5: force and moment */
     const iiwa14_real_t t154 = parameters[ZZ5R] * t37 - parameters[XX5R] * t17 + parameters[YZ5] * t64
         - parameters[XZ5] * t51;
     const iiwa14_real_t t155 = parameters[XY5] * (t139 - t132) + t154 + (parameters[MX5] * t120
         + parameters[MY5R] * t102);
-    const iiwa14_real_t t156 = t155 + (t56 * t128 - t39 * t121);
+    const iiwa14_real_t t156 = t155 + (t56 * t128 - t39 * t121); /* link j6: what it passes on */
+    /* link j4: force and moment */
     const iiwa14_real_t t157 = t35 * (parameters[ZZ4R] - parameters[XX4R]) - parameters[XY4] * t50
         + parameters[YZ4] * t46;
+    /* link j5: what it passes on */
     const iiwa14_real_t t158 = parameters[XZ4] * (t104 - t103) + t157 + parameters[MX4] * t100 + t156;
+    /* link j3: force and moment */
     const iiwa14_real_t t159 = parameters[ZZ3R] * t31 - parameters[XX3R] * t32 + parameters[XY3] * (t43
         - t44);
-    const iiwa14_real_t t160 = t18 - t22;
-    const iiwa14_real_t t161 = t12 * t12;
+    const iiwa14_real_t t160 = t18 - t22; /* link j4: motion */
+    const iiwa14_real_t t161 = t12 * t12; /* link j3: motion */
     const iiwa14_real_t t162 = t8 * t8;
+    /* link j3: force and moment */
     const iiwa14_real_t t163 = parameters[YZ3] * (t161 - t162) + (t159 - parameters[XZ3] * t160)
         - parameters[MY3R] * t97;
-    const iiwa14_real_t t164 = t163 + (t5 * t153 - t9 * t158);
-    const iiwa14_real_t t165 = t14 * t147 - t11 * t145;
+    const iiwa14_real_t t164 = t163 + (t5 * t153 - t9 * t158); /* link j4: what it passes on */
+    const iiwa14_real_t t165 = t14 * t147 - t11 * t145; /* link j5: what it passes on */
+    /* link j4: force and moment */
     const iiwa14_real_t t166 = parameters[XZ4] * t47 - (parameters[XX4R] * t41 + parameters[ZZ4R] * t45
         + parameters[YZ4] * t34);
     const iiwa14_real_t t167 = parameters[XY4] * (t152 - t103) + t166 - (parameters[MX4] * t106
         + parameters[MY4R] * t98);
+    /* link j5: what it passes on */
     const iiwa14_real_t t168 = t167 + (t14 * t134 - t11 * t140 + IIWA14_C(0.4) * t165);
+    /* link j3: force and moment */
     const iiwa14_real_t t169 = t43 * (parameters[ZZ3R] - parameters[XX3R]) - parameters[XY3] * t33
         + parameters[YZ3] * t23;
-    const iiwa14_real_t t170 = t4 * t4;
+    const iiwa14_real_t t170 = t4 * t4; /* link j3: motion */
+    /* link j4: what it passes on */
     const iiwa14_real_t t171 = parameters[MX3] * t97 + (parameters[XZ3] * (t162 - t170) + t169) + t168;
     const iiwa14_real_t t172 = t5 * (t165 - (parameters[MX4] * (t152 + t104) + parameters[MY4R] * t46));
+    /* link j6: what it passes on */
     const iiwa14_real_t t173 = parameters[MX5] * t129 + parameters[MY5R] * t55 + (t39 * t143 + t56 * t144);
+    /* link j4: what it passes on */
     const iiwa14_real_t t174 = t172 + t9 * (parameters[MY4R] * t105 + parameters[MX4] * t150 + t173);
     const iiwa14_real_t t175 = t174 - (parameters[MX3] * (t161 + t162) + parameters[MY3R] * t23);
     const iiwa14_real_t t176 = parameters[MY3R] * (t170 + t162) + parameters[MX3] * t160
         - (parameters[MX4] * t149 + parameters[MY4R] * t50 - t148);
+    /* link j3: what it passes on */
     const iiwa14_real_t t177 = t3 * t171 - t2 * t164 + IIWA14_C(0.42) * (t3 * t175 - t2 * t176);
+    /* link j2: force and moment */
     const iiwa14_real_t t178 = parameters[ZZ2R] * t26 + parameters[XX2R] * t28 + parameters[XY2] * (t21
         - t19);
-    const iiwa14_real_t t179 = t7 * t7;
+    const iiwa14_real_t t179 = t7 * t7; /* link j2: motion */
+    /* link j2: force and moment */
     const iiwa14_real_t t180 = parameters[YZ2] * (t95 - t179) + (t178 - parameters[XZ2] * (ddq[1] + t24));
+    /* link j3: force and moment */
     const iiwa14_real_t t181 = parameters[XX3R] * t18 + parameters[ZZ3R] * t22 - parameters[YZ3] * t42
         - parameters[XZ3] * t30;
     const iiwa14_real_t t182 = parameters[XY3] * (t170 - t161) + t181 + (parameters[MX3] * t100
         + parameters[MY3R] * t93);
-    const iiwa14_real_t t183 = t182 + (t9 * t153 + t5 * t158);
+    const iiwa14_real_t t183 = t182 + (t9 * t153 + t5 * t158); /* link j4: what it passes on */
+    /* link j2: force and moment */
     const iiwa14_real_t t184 = t19 * (parameters[XX2R] - parameters[ZZ2R]) + parameters[XY2] * t29
         + parameters[YZ2] * t25;
+    /* link j2: what it passes on */
     const iiwa14_real_t t185 = t0 * (t180 + t177) + t6 * (parameters[XZ2] * (t94 - t95) + t184 + t183);
-    const iiwa14_real_t t186 = iiwa14_sign(dq[0]);
+    const iiwa14_real_t t186 = iiwa14_sign(dq[0]); /* joint j1: coulomb_friction */
     const iiwa14_real_t t187 = IIWA14_C(10.0) * (parameters[FV1] * (IIWA14_C(160.0) * dq[0])
         + parameters[FC1] * t186) + IIWA14_C(0.0625) * (parameters[ZZ1R] * ddq[0] + t185);
     out[0] = t187;
+    /* link j3: what it passes on */
     const iiwa14_real_t t188 = t3 * t164 + t2 * t171 + IIWA14_C(0.42) * (t2 * t175 + t3 * t176);
+    /* link j2: force and moment */
     const iiwa14_real_t t189 = parameters[ZZ2R] * ddq[1] - parameters[XX2R] * t24 - parameters[YZ2] * t20
         - parameters[XZ2] * t27;
     const iiwa14_real_t t190 = parameters[MX2] * t96 + parameters[MY2R] * t90 + (parameters[XY2] * (t94
         - t179) + t189);
-    const iiwa14_real_t t191 = iiwa14_sign(dq[1]);
+    const iiwa14_real_t t191 = iiwa14_sign(dq[1]); /* joint j2: coulomb_friction */
     const iiwa14_real_t t192 = IIWA14_C(10.0) * (parameters[FV2] * (IIWA14_C(160.0) * dq[1])
         + parameters[FC2] * t191) + IIWA14_C(0.0625) * (t190 + t188);
     out[1] = t192;
-    const iiwa14_real_t t193 = iiwa14_sign(dq[2]);
+    const iiwa14_real_t t193 = iiwa14_sign(dq[2]); /* joint j3: coulomb_friction */
     const iiwa14_real_t t194 = parameters[FV3] * (IIWA14_C(160.0) * dq[2]) + parameters[FC3] * t193
         + parameters[IA3] * (IIWA14_C(160.0) * ddq[2]);
     out[2] = IIWA14_C(10.0) * t194 + IIWA14_C(0.0625) * t183;
-    const iiwa14_real_t t195 = iiwa14_sign(dq[3]);
+    const iiwa14_real_t t195 = iiwa14_sign(dq[3]); /* joint j4: coulomb_friction */
     const iiwa14_real_t t196 = parameters[FV4] * (IIWA14_C(160.0) * dq[3]) + parameters[FC4] * t195
         + parameters[IA4] * (IIWA14_C(160.0) * ddq[3]);
     out[3] = IIWA14_C(10.0) * t196 + IIWA14_C(-0.0625) * t168;
-    const iiwa14_real_t t197 = iiwa14_sign(dq[4]);
+    const iiwa14_real_t t197 = iiwa14_sign(dq[4]); /* joint j5: coulomb_friction */
     const iiwa14_real_t t198 = parameters[FV5] * (IIWA14_C(1.0e2) * dq[4]) + parameters[FC5] * t197
         + parameters[IA5] * (IIWA14_C(1.0e2) * ddq[4]);
     out[4] = IIWA14_C(12.5) * t198 + IIWA14_C(0.125) * t156;
-    const iiwa14_real_t t199 = iiwa14_sign(dq[5]);
+    const iiwa14_real_t t199 = iiwa14_sign(dq[5]); /* joint j6: coulomb_friction */
     const iiwa14_real_t t200 = parameters[FV6] * (IIWA14_C(160.0) * dq[5]) + parameters[FC6] * t199
         + parameters[IA6] * (IIWA14_C(160.0) * ddq[5]);
     out[5] = IIWA14_C(20.0) * t200 + IIWA14_C(0.125) * t137;
-    const iiwa14_real_t t201 = iiwa14_sign(dq[6]);
+    const iiwa14_real_t t201 = iiwa14_sign(dq[6]); /* joint j7: coulomb_friction */
     const iiwa14_real_t t202 = parameters[FV7] * (IIWA14_C(160.0) * dq[6]) + parameters[FC7] * t201
         + parameters[IA7] * (IIWA14_C(160.0) * ddq[6]);
     out[6] = IIWA14_C(20.0) * t202 + IIWA14_C(0.125) * t125;

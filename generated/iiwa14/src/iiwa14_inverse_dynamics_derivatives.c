@@ -7,16 +7,16 @@
  * Arm iiwa14, description 4f01a5afe35e97fd.
  * SPDX-License-Identifier: 0BSD
  *
- * Operations: 2891 (1666 mul, 1225 add, 0 neg), 12 trig, 7 other.
+ * Operations: 2891 (1666 mul, 1225 add, 0 neg), 12 trig, 7 other calls (sign, select and the like).
  *
- * @param[in]   q             [7]   [rad]                joint coordinates; norm at most 10000
- * @param[in]   dq            [7]   [rad/s]              joint velocities; norm at most 100000
- * @param[in]   ddq           [7]   [rad/s^2]            joint accelerations; norm at most 1e+08
- * @param[in]   parameters    [62]                       base parameters; norm at most 1e+09
- * @param[out]  input         [7]   [A]                  inputs: motor currents, efforts where undriven
- * @param[out]  input_by_q    [49]  [(A) per (rad)]      d input / d q; 7 x 7, row-major
- * @param[out]  input_by_dq   [49]  [(A) per (rad/s)]    d input / d dq; 7 x 7, row-major
- * @param[out]  input_by_ddq  [49]  [(A) per (rad/s^2)]  d input / d ddq; 7 x 7, row-major
+ * @param[in]   q             [7]   [rad]              joint coordinates; norm at most 10000
+ * @param[in]   dq            [7]   [rad/s]            joint velocities; norm at most 100000
+ * @param[in]   ddq           [7]   [rad/s^2]          joint accelerations; norm at most 1e+08
+ * @param[in]   parameters    [62]                     base parameters; norm at most 1e+09
+ * @param[out]  input         [7]   [A]                inputs: motor currents, efforts where undriven
+ * @param[out]  input_by_q    [49]  [A per rad]        d input / d q; 7 x 7, row-major
+ * @param[out]  input_by_dq   [49]  [A per (rad/s)]    d input / d dq; 7 x 7, row-major
+ * @param[out]  input_by_ddq  [49]  [A per (rad/s^2)]  d input / d ddq; 7 x 7, row-major
  *
  * Coordinates:
  *
@@ -95,11 +95,11 @@
  */
 #include "iiwa14_private.h"
 
-#if IIWA14_GENERATION != 0x27C72E36UL
+#if IIWA14_GENERATION != 0x1E31C9F2UL
 #error "iiwa14.h and iiwa14_inverse_dynamics_derivatives.c are of different generations: generate the arm again"
 #endif
 
-int iiwa14_inverse_dynamics_derivatives(
+iiwa14_status_t iiwa14_inverse_dynamics_derivatives(
     const iiwa14_real_t q[IIWA14_N_JOINTS],
     const iiwa14_real_t dq[IIWA14_N_JOINTS],
     const iiwa14_real_t ddq[IIWA14_N_JOINTS],
@@ -113,7 +113,7 @@ int iiwa14_inverse_dynamics_derivatives(
         XZ4, YZ4, ZZ4R, MX4, MY4R, XX5R, XY5, XZ5, YZ5, ZZ5R, MX5, MY5R, XX6R, XY6, XZ6, YZ6, ZZ6R, MX6, MY6R,
         XX7R, XY7, XZ7R, YZ7R, ZZ7, MX7, MY7, FV1, FC1, FV2, FC2, FV3, FC3, IA3, FV4, FC4, IA4, FV5, FC5, IA5,
         FV6, FC6, IA6, FV7, FC7, IA7 };
-    int status = IIWA14_STATUS_OK;
+    iiwa14_status_t status = IIWA14_STATUS_OK;
 
     if (!iiwa14_within_joints(q, IIWA14_C(1.0e8))
         || !iiwa14_within_joints(dq, IIWA14_C(1.0e10))
@@ -141,66 +141,66 @@ int iiwa14_inverse_dynamics_derivatives(
     IIWA14_SINCOS(q[5], &t39, &t56);
     iiwa14_real_t t71, t63;
     IIWA14_SINCOS(q[6], &t71, &t63);
-    const iiwa14_real_t t1 = t0 * dq[0];
-    const iiwa14_real_t t4 = t2 * t1 - t3 * dq[1];
-    const iiwa14_real_t t7 = t6 * dq[0];
-    const iiwa14_real_t t8 = dq[2] + t7;
-    const iiwa14_real_t t10 = t5 * t4 - t9 * t8;
-    const iiwa14_real_t t12 = t3 * t1 + t2 * dq[1];
-    const iiwa14_real_t t13 = t12 - dq[3];
-    const iiwa14_real_t t15 = t11 * t10 - t14 * t13;
+    const iiwa14_real_t t1 = t0 * dq[0]; /* link j2: motion */
+    const iiwa14_real_t t4 = t2 * t1 - t3 * dq[1]; /* link j3: motion */
+    const iiwa14_real_t t7 = t6 * dq[0]; /* link j2: motion */
+    const iiwa14_real_t t8 = dq[2] + t7; /* link j3: motion */
+    const iiwa14_real_t t10 = t5 * t4 - t9 * t8; /* link j4: motion */
+    const iiwa14_real_t t12 = t3 * t1 + t2 * dq[1]; /* link j3: motion */
+    const iiwa14_real_t t13 = t12 - dq[3]; /* link j4: motion */
+    const iiwa14_real_t t15 = t11 * t10 - t14 * t13; /* link j5: motion */
     const iiwa14_real_t t16 = t14 * t10 + t11 * t13;
     const iiwa14_real_t t17 = t15 * t16;
-    const iiwa14_real_t t18 = t4 * t12;
-    const iiwa14_real_t t19 = dq[1] * t1;
+    const iiwa14_real_t t18 = t4 * t12; /* link j3: motion */
+    const iiwa14_real_t t19 = dq[1] * t1; /* link j2: motion */
     const iiwa14_real_t t20 = t6 * ddq[0];
     const iiwa14_real_t t21 = t19 - t20;
-    const iiwa14_real_t t22 = t21 - ddq[2];
-    const iiwa14_real_t t23 = t18 - t22;
-    const iiwa14_real_t t24 = t1 * t7;
-    const iiwa14_real_t t25 = ddq[1] - t24;
-    const iiwa14_real_t t26 = dq[1] * t7;
+    const iiwa14_real_t t22 = t21 - ddq[2]; /* link j3: motion */
+    const iiwa14_real_t t23 = t18 - t22; /* link j4: motion */
+    const iiwa14_real_t t24 = t1 * t7; /* link j2: motion */
+    const iiwa14_real_t t25 = ddq[1] - t24; /* link j3: motion */
+    const iiwa14_real_t t26 = dq[1] * t7; /* link j2: motion */
     const iiwa14_real_t t27 = t0 * ddq[0];
     const iiwa14_real_t t28 = t26 + t27;
-    const iiwa14_real_t t29 = t26 + t28;
+    const iiwa14_real_t t29 = t26 + t28; /* link j3: motion */
     const iiwa14_real_t t30 = t2 * t29 - t3 * t25;
     const iiwa14_real_t t31 = t12 * t8;
     const iiwa14_real_t t32 = t30 - t31;
-    const iiwa14_real_t t33 = t32 - t31;
+    const iiwa14_real_t t33 = t32 - t31; /* link j4: motion */
     const iiwa14_real_t t34 = t5 * t23 + t9 * t33;
     const iiwa14_real_t t35 = t10 * t13;
     const iiwa14_real_t t36 = t34 - t35;
-    const iiwa14_real_t t37 = ddq[4] + t36;
-    const iiwa14_real_t t38 = t17 + t37;
-    const iiwa14_real_t t40 = t9 * t4 + t5 * t8;
+    const iiwa14_real_t t37 = ddq[4] + t36; /* link j5: motion */
+    const iiwa14_real_t t38 = t17 + t37; /* link j6: motion */
+    const iiwa14_real_t t40 = t9 * t4 + t5 * t8; /* link j4: motion */
     const iiwa14_real_t t41 = t10 * t40;
-    const iiwa14_real_t t42 = t2 * t25 + t3 * t29;
+    const iiwa14_real_t t42 = t2 * t25 + t3 * t29; /* link j3: motion */
     const iiwa14_real_t t43 = t4 * t8;
     const iiwa14_real_t t44 = t43 + t42;
-    const iiwa14_real_t t45 = t44 - ddq[3];
-    const iiwa14_real_t t46 = t45 - t41;
-    const iiwa14_real_t t47 = t5 * t33 - t9 * t23;
+    const iiwa14_real_t t45 = t44 - ddq[3]; /* link j4: motion */
+    const iiwa14_real_t t46 = t45 - t41; /* link j5: motion */
+    const iiwa14_real_t t47 = t5 * t33 - t9 * t23; /* link j4: motion */
     const iiwa14_real_t t48 = t40 * t13;
     const iiwa14_real_t t49 = t48 + t47;
-    const iiwa14_real_t t50 = t48 + t49;
+    const iiwa14_real_t t50 = t48 + t49; /* link j5: motion */
     const iiwa14_real_t t51 = t11 * t50 - t14 * t46;
     const iiwa14_real_t t52 = dq[4] + t40;
     const iiwa14_real_t t53 = t16 * t52;
     const iiwa14_real_t t54 = t51 - t53;
-    const iiwa14_real_t t55 = t54 - t53;
+    const iiwa14_real_t t55 = t54 - t53; /* link j6: motion */
     const iiwa14_real_t t57 = t39 * t38 + t56 * t55;
     const iiwa14_real_t t58 = t56 * t52 - t39 * t15;
     const iiwa14_real_t t59 = dq[5] + t16;
     const iiwa14_real_t t60 = t58 * t59;
     const iiwa14_real_t t61 = t60 + t57;
-    const iiwa14_real_t t62 = t60 + t61;
-    const iiwa14_real_t t64 = t11 * t46 + t14 * t50;
+    const iiwa14_real_t t62 = t60 + t61; /* link j7: motion */
+    const iiwa14_real_t t64 = t11 * t46 + t14 * t50; /* link j5: motion */
     const iiwa14_real_t t65 = t15 * t52;
     const iiwa14_real_t t66 = t65 + t64;
-    const iiwa14_real_t t67 = ddq[5] + t66;
+    const iiwa14_real_t t67 = ddq[5] + t66; /* link j6: motion */
     const iiwa14_real_t t68 = t56 * t15 + t39 * t52;
     const iiwa14_real_t t69 = t68 * t58;
-    const iiwa14_real_t t70 = t69 - t67;
+    const iiwa14_real_t t70 = t69 - t67; /* link j7: motion */
     const iiwa14_real_t t72 = t71 * t70 + t63 * t62;
     const iiwa14_real_t t73 = t71 * t68 + t63 * t59;
     const iiwa14_real_t t74 = dq[6] + t58;
@@ -209,176 +209,216 @@ int iiwa14_inverse_dynamics_derivatives(
     const iiwa14_real_t t77 = t71 * t62 - t63 * t70;
     const iiwa14_real_t t78 = t63 * t68 - t71 * t59;
     const iiwa14_real_t t79 = t78 * t74;
-    const iiwa14_real_t t80 = t79 + (t79 + t77);
-    const iiwa14_real_t t81 = t56 * t38 - t39 * t55;
+    const iiwa14_real_t t80 = t79 + (t79 + t77); /* link j7: force and moment */
+    const iiwa14_real_t t81 = t56 * t38 - t39 * t55; /* link j6: motion */
     const iiwa14_real_t t82 = t68 * t59;
     const iiwa14_real_t t83 = t81 - t82;
-    const iiwa14_real_t t84 = ddq[6] + t83;
+    const iiwa14_real_t t84 = ddq[6] + t83; /* link j7: motion */
     const iiwa14_real_t t85 = t78 * t73;
-    const iiwa14_real_t t86 = t85 - t84;
+    const iiwa14_real_t t86 = t85 - t84; /* link j7: force and moment */
     const iiwa14_real_t t87 = parameters[ZZ7] * t75 - parameters[XX7R] * t76 + parameters[XY7] * t80
         - parameters[XZ7R] * t86;
-    const iiwa14_real_t t88 = t73 * t73;
+    const iiwa14_real_t t88 = t73 * t73; /* link j7: motion */
     const iiwa14_real_t t89 = t74 * t74;
-    const iiwa14_real_t t90 = IIWA14_C(9.81) * t0;
-    const iiwa14_real_t t91 = IIWA14_C(0.42) * t25 - t90;
+    const iiwa14_real_t t90 = IIWA14_C(9.81) * t0; /* link j2: motion */
+    const iiwa14_real_t t91 = IIWA14_C(0.42) * t25 - t90; /* link j3: motion */
     const iiwa14_real_t t92 = IIWA14_C(0.42) * t29;
     const iiwa14_real_t t93 = t2 * t91 + t3 * t92;
-    const iiwa14_real_t t94 = t1 * t1;
+    const iiwa14_real_t t94 = t1 * t1; /* link j2: motion */
     const iiwa14_real_t t95 = dq[1] * dq[1];
     const iiwa14_real_t t96 = IIWA14_C(9.81) * t6;
-    const iiwa14_real_t t97 = IIWA14_C(0.42) * (t95 + t94) - t96;
-    const iiwa14_real_t t98 = t5 * t93 - t9 * t97;
-    const iiwa14_real_t t99 = t98 + IIWA14_C(0.4) * t46;
-    const iiwa14_real_t t100 = t3 * t91 - t2 * t92;
-    const iiwa14_real_t t101 = t100 + IIWA14_C(-0.4) * t50;
+    const iiwa14_real_t t97 = IIWA14_C(0.42) * (t95 + t94) - t96; /* link j3: motion */
+    const iiwa14_real_t t98 = t5 * t93 - t9 * t97; /* link j4: motion */
+    const iiwa14_real_t t99 = t98 + IIWA14_C(0.4) * t46; /* link j5: motion */
+    const iiwa14_real_t t100 = t3 * t91 - t2 * t92; /* link j3: motion */
+    const iiwa14_real_t t101 = t100 + IIWA14_C(-0.4) * t50; /* link j5: motion */
     const iiwa14_real_t t102 = t11 * t99 - t14 * t101;
-    const iiwa14_real_t t103 = t10 * t10;
+    const iiwa14_real_t t103 = t10 * t10; /* link j4: motion */
     const iiwa14_real_t t104 = t13 * t13;
-    const iiwa14_real_t t105 = t103 + t104;
-    const iiwa14_real_t t106 = t5 * t97 + t9 * t93;
-    const iiwa14_real_t t107 = IIWA14_C(-0.4) * t105 - t106;
-    const iiwa14_real_t t108 = t39 * t102 + t56 * t107;
+    const iiwa14_real_t t105 = t103 + t104; /* link j5: motion */
+    const iiwa14_real_t t106 = t5 * t97 + t9 * t93; /* link j4: motion */
+    const iiwa14_real_t t107 = IIWA14_C(-0.4) * t105 - t106; /* link j5: motion */
+    const iiwa14_real_t t108 = t39 * t102 + t56 * t107; /* link j6: motion */
+    /* link j7: force and moment */
     const iiwa14_real_t t109 = parameters[YZ7R] * (t88 - t89) + t87 + parameters[MY7] * t108;
     const iiwa14_real_t t110 = t76 - t75;
     const iiwa14_real_t t111 = t85 + t84;
     const iiwa14_real_t t112 = t79 * (parameters[XX7R] - parameters[ZZ7]) + parameters[XY7] * t110
         - parameters[YZ7R] * t111;
-    const iiwa14_real_t t113 = t78 * t78;
+    const iiwa14_real_t t113 = t78 * t78; /* link j7: motion */
+    /* link j7: force and moment */
     const iiwa14_real_t t114 = parameters[XZ7R] * (t113 - t89) + t112 + parameters[MX7] * t108;
-    const iiwa14_real_t t115 = t82 - t83;
+    const iiwa14_real_t t115 = t82 - t83; /* link j7: motion */
     const iiwa14_real_t t116 = t69 + t67;
+    /* link j6: force and moment */
     const iiwa14_real_t t117 = parameters[XY6] * t115 - (parameters[ZZ6R] * t60 + parameters[XX6R] * t61)
         + parameters[XZ6] * t116;
-    const iiwa14_real_t t118 = t58 * t58;
+    const iiwa14_real_t t118 = t58 * t58; /* link j6: motion */
     const iiwa14_real_t t119 = t59 * t59;
-    const iiwa14_real_t t120 = t14 * t99 + t11 * t101;
+    const iiwa14_real_t t120 = t14 * t99 + t11 * t101; /* link j5: motion */
+    /* link j7: what it passes on */
     const iiwa14_real_t t121 = parameters[YZ6] * (t118 - t119) + t117 - parameters[MY6R] * t120 + (t63 * t109
         + t71 * t114);
+    /* link j7: force and moment */
     const iiwa14_real_t t122 = parameters[XX7R] * t85 + parameters[ZZ7] * t84 + parameters[YZ7R] * t77
         - parameters[XZ7R] * t72;
-    const iiwa14_real_t t123 = t39 * t107 - t56 * t102;
-    const iiwa14_real_t t124 = t63 * t120 - t71 * t123;
+    const iiwa14_real_t t123 = t39 * t107 - t56 * t102; /* link j6: motion */
+    const iiwa14_real_t t124 = t63 * t120 - t71 * t123; /* link j7: motion */
     const iiwa14_real_t t125 = t63 * t123 + t71 * t120;
+    /* link j7: force and moment */
     const iiwa14_real_t t126 = parameters[XY7] * (t113 - t88) + t122 + (parameters[MY7] * t125
         - parameters[MX7] * t124);
+    /* link j6: force and moment */
     const iiwa14_real_t t127 = t82 * (parameters[XX6R] - parameters[ZZ6R]) + parameters[XY6] * t62
         + parameters[YZ6] * t70;
-    const iiwa14_real_t t128 = t68 * t68;
+    const iiwa14_real_t t128 = t68 * t68; /* link j6: motion */
+    /* link j7: what it passes on */
     const iiwa14_real_t t129 = parameters[XZ6] * (t128 - t119) + t127 - parameters[MX6] * t120 + t126;
-    const iiwa14_real_t t130 = t65 + t66;
+    const iiwa14_real_t t130 = t65 + t66; /* link j6: motion */
     const iiwa14_real_t t131 = t37 - t17;
+    /* link j5: force and moment */
     const iiwa14_real_t t132 = parameters[ZZ5R] * t53 - parameters[XX5R] * t54 + parameters[XY5] * t130
         + parameters[XZ5] * t131;
-    const iiwa14_real_t t133 = t16 * t16;
+    const iiwa14_real_t t133 = t16 * t16; /* link j5: motion */
     const iiwa14_real_t t134 = t52 * t52;
+    /* link j6: what it passes on */
     const iiwa14_real_t t135 = parameters[YZ5] * (t133 - t134) + t132 + parameters[MY5R] * t107 + (t56 * t121
         + t39 * t129);
+    /* link j6: force and moment */
     const iiwa14_real_t t136 = parameters[XX6R] * t69 - parameters[ZZ6R] * t67 + parameters[YZ6] * t81
         + parameters[XZ6] * t57;
     const iiwa14_real_t t137 = parameters[XY6] * (t118 - t128) + t136 + (parameters[MX6] * t108
         - parameters[MY6R] * t123);
-    const iiwa14_real_t t138 = t137 + (t63 * t114 - t71 * t109);
+    const iiwa14_real_t t138 = t137 + (t63 * t114 - t71 * t109); /* link j7: what it passes on */
+    /* link j5: force and moment */
     const iiwa14_real_t t139 = t65 * (parameters[XX5R] - parameters[ZZ5R]) + parameters[XY5] * t55
         - parameters[YZ5] * t38;
-    const iiwa14_real_t t140 = t15 * t15;
+    const iiwa14_real_t t140 = t15 * t15; /* link j5: motion */
+    /* link j6: what it passes on */
     const iiwa14_real_t t141 = parameters[XZ5] * (t140 - t134) + t139 + parameters[MX5] * t107 + t138;
+    /* link j7: force and moment */
     const iiwa14_real_t t142 = parameters[MX7] * (t88 + t89) + parameters[MY7] * t111;
     const iiwa14_real_t t143 = parameters[MY7] * (t113 + t89) + parameters[MX7] * t86;
+    /* link j7: what it passes on */
     const iiwa14_real_t t144 = parameters[MY6R] * t70 - parameters[MX6] * (t118 + t119) + (t71 * t143
         - t63 * t142);
     const iiwa14_real_t t145 = parameters[MY6R] * (t128 + t119) - parameters[MX6] * t116
         - (parameters[MX7] * t80 + parameters[MY7] * t110);
+    /* link j6: what it passes on */
     const iiwa14_real_t t146 = parameters[MX5] * (t133 + t134) + parameters[MY5R] * t38 - (t56 * t144
         + t39 * t145);
+    /* link j7: what it passes on */
     const iiwa14_real_t t147 = parameters[MX6] * t115 + parameters[MY6R] * t62 + (t71 * t142 + t63 * t143);
+    /* link j6: what it passes on */
     const iiwa14_real_t t148 = parameters[MY5R] * (t140 + t134) - parameters[MX5] * t131 + t147;
-    const iiwa14_real_t t149 = t14 * t146 + t11 * t148;
-    const iiwa14_real_t t150 = t36 - t35;
+    const iiwa14_real_t t149 = t14 * t146 + t11 * t148; /* link j5: what it passes on */
+    const iiwa14_real_t t150 = t36 - t35; /* link j5: motion */
     const iiwa14_real_t t151 = t41 + t45;
+    /* link j4: force and moment */
     const iiwa14_real_t t152 = parameters[XY4] * t150 - (parameters[ZZ4R] * t48 + parameters[XX4R] * t49)
         - parameters[XZ4] * t151;
-    const iiwa14_real_t t153 = t40 * t40;
+    const iiwa14_real_t t153 = t40 * t40; /* link j4: motion */
+    /* link j5: what it passes on */
     const iiwa14_real_t t154 = parameters[YZ4] * (t153 - t104) + t152 + parameters[MY4R] * t100 + (t11 * t135
         + t14 * t141 + IIWA14_C(0.4) * t149);
+    /* link j5: force and moment */
     const iiwa14_real_t t155 = parameters[XZ5] * t51 - (parameters[XX5R] * t17 + parameters[ZZ5R] * t37
         + parameters[YZ5] * t64);
     const iiwa14_real_t t156 = parameters[XY5] * (t133 - t140) + t155 + (parameters[MX5] * t120
         + parameters[MY5R] * t102);
-    const iiwa14_real_t t157 = t156 + (t39 * t121 - t56 * t129);
+    const iiwa14_real_t t157 = t156 + (t39 * t121 - t56 * t129); /* link j6: what it passes on */
+    /* link j4: force and moment */
     const iiwa14_real_t t158 = parameters[XY4] * t50 - t35 * (parameters[XX4R] - parameters[ZZ4R])
         + parameters[YZ4] * t46;
+    /* link j5: what it passes on */
     const iiwa14_real_t t159 = parameters[XZ4] * (t103 - t104) + t158 + parameters[MX4] * t100 + t157;
+    /* link j3: force and moment */
     const iiwa14_real_t t160 = parameters[ZZ3R] * t31 - parameters[XX3R] * t32 + parameters[XY3] * (t43
         + t44);
-    const iiwa14_real_t t161 = t18 + t22;
-    const iiwa14_real_t t162 = t12 * t12;
+    const iiwa14_real_t t161 = t18 + t22; /* link j4: motion */
+    const iiwa14_real_t t162 = t12 * t12; /* link j3: motion */
     const iiwa14_real_t t163 = t8 * t8;
+    /* link j3: force and moment */
     const iiwa14_real_t t164 = parameters[YZ3] * (t162 - t163) + (t160 - parameters[XZ3] * t161)
         - parameters[MY3R] * t97;
-    const iiwa14_real_t t165 = t164 + (t5 * t154 + t9 * t159);
-    const iiwa14_real_t t166 = t11 * t146 - t14 * t148;
+    const iiwa14_real_t t165 = t164 + (t5 * t154 + t9 * t159); /* link j4: what it passes on */
+    const iiwa14_real_t t166 = t11 * t146 - t14 * t148; /* link j5: what it passes on */
+    /* link j4: force and moment */
     const iiwa14_real_t t167 = parameters[ZZ4R] * t45 - parameters[XX4R] * t41 - parameters[YZ4] * t34
         + parameters[XZ4] * t47;
     const iiwa14_real_t t168 = parameters[XY4] * (t153 - t103) + t167 + (parameters[MX4] * t106
         + parameters[MY4R] * t98);
+    /* link j5: what it passes on */
     const iiwa14_real_t t169 = t168 + (t14 * t135 - t11 * t141 + IIWA14_C(-0.4) * t166);
+    /* link j3: force and moment */
     const iiwa14_real_t t170 = t43 * (parameters[ZZ3R] - parameters[XX3R]) - parameters[XY3] * t33
         + parameters[YZ3] * t23;
-    const iiwa14_real_t t171 = t4 * t4;
+    const iiwa14_real_t t171 = t4 * t4; /* link j3: motion */
+    /* link j4: what it passes on */
     const iiwa14_real_t t172 = parameters[MX3] * t97 + (parameters[XZ3] * (t163 - t171) + t170) + t169;
+    /* link j5: what it passes on */
     const iiwa14_real_t t173 = parameters[MX4] * (t153 + t104) - parameters[MY4R] * t46 + t166;
+    /* link j6: what it passes on */
     const iiwa14_real_t t174 = parameters[MX5] * t130 + parameters[MY5R] * t55 + (t39 * t144 - t56 * t145);
+    /* link j5: what it passes on */
     const iiwa14_real_t t175 = parameters[MY4R] * t105 + parameters[MX4] * t151 + t174;
+    /* link j4: what it passes on */
     const iiwa14_real_t t176 = t9 * t175 - t5 * t173 - (parameters[MX3] * (t162 + t163)
         + parameters[MY3R] * t23);
     const iiwa14_real_t t177 = parameters[MY3R] * (t171 + t163) + parameters[MX3] * t161 + (t149
         - (parameters[MX4] * t150 + parameters[MY4R] * t50));
+    /* link j3: what it passes on */
     const iiwa14_real_t t178 = t3 * t172 - t2 * t165 + IIWA14_C(0.42) * (t3 * t176 - t2 * t177);
+    /* link j2: force and moment */
     const iiwa14_real_t t179 = parameters[ZZ2R] * t26 + parameters[XX2R] * t28 - parameters[XY2] * (t19
         + t21);
-    const iiwa14_real_t t180 = t7 * t7;
+    const iiwa14_real_t t180 = t7 * t7; /* link j2: motion */
+    /* link j2: force and moment */
     const iiwa14_real_t t181 = parameters[YZ2] * (t95 - t180) + (t179 - parameters[XZ2] * (ddq[1] + t24));
-    const iiwa14_real_t t182 = t181 + t178;
+    const iiwa14_real_t t182 = t181 + t178; /* link j3: what it passes on */
+    /* link j3: force and moment */
     const iiwa14_real_t t183 = parameters[ZZ3R] * t22 - parameters[XX3R] * t18 - parameters[YZ3] * t42
         + parameters[XZ3] * t30;
     const iiwa14_real_t t184 = parameters[XY3] * (t162 - t171) + t183 + (parameters[MX3] * t100
         + parameters[MY3R] * t93);
-    const iiwa14_real_t t185 = t184 + (t5 * t159 - t9 * t154);
+    const iiwa14_real_t t185 = t184 + (t5 * t159 - t9 * t154); /* link j4: what it passes on */
+    /* link j2: force and moment */
     const iiwa14_real_t t186 = t19 * (parameters[ZZ2R] - parameters[XX2R]) - parameters[XY2] * t29
         + parameters[YZ2] * t25;
-    const iiwa14_real_t t187 = parameters[XZ2] * (t95 - t94) + t186 + t185;
+    const iiwa14_real_t t187 = parameters[XZ2] * (t95 - t94) + t186 + t185; /* link j3: what it passes on */
     const iiwa14_real_t t188 = IIWA14_C(0.0625) * (parameters[ZZ1R] * ddq[0] + (t0 * t182 - t6 * t187));
-    const iiwa14_real_t t189 = iiwa14_sign(dq[0]);
+    const iiwa14_real_t t189 = iiwa14_sign(dq[0]); /* joint j1: coulomb_friction */
     const iiwa14_real_t t190 = IIWA14_C(10.0) * (parameters[FV1] * (IIWA14_C(160.0) * dq[0])
         + parameters[FC1] * t189) + t188;
     input[0] = t190;
+    /* link j3: what it passes on */
     const iiwa14_real_t t191 = t3 * t165 + t2 * t172 + IIWA14_C(0.42) * (t2 * t176 + t3 * t177);
+    /* link j2: force and moment */
     const iiwa14_real_t t192 = parameters[ZZ2R] * ddq[1] - parameters[XX2R] * t24 - parameters[YZ2] * t20
         - parameters[XZ2] * t27;
     const iiwa14_real_t t193 = parameters[MY2R] * t90 - parameters[MX2] * t96 + (parameters[XY2] * (t94
         - t180) + t192);
-    const iiwa14_real_t t194 = iiwa14_sign(dq[1]);
+    const iiwa14_real_t t194 = iiwa14_sign(dq[1]); /* joint j2: coulomb_friction */
     const iiwa14_real_t t195 = IIWA14_C(10.0) * (parameters[FV2] * (IIWA14_C(160.0) * dq[1])
         + parameters[FC2] * t194) + IIWA14_C(0.0625) * (t193 + t191);
     input[1] = t195;
-    const iiwa14_real_t t196 = iiwa14_sign(dq[2]);
+    const iiwa14_real_t t196 = iiwa14_sign(dq[2]); /* joint j3: coulomb_friction */
     const iiwa14_real_t t197 = parameters[FV3] * (IIWA14_C(160.0) * dq[2]) + parameters[FC3] * t196
         + parameters[IA3] * (IIWA14_C(160.0) * ddq[2]);
     input[2] = IIWA14_C(10.0) * t197 + IIWA14_C(-0.0625) * t185;
-    const iiwa14_real_t t198 = iiwa14_sign(dq[3]);
+    const iiwa14_real_t t198 = iiwa14_sign(dq[3]); /* joint j4: coulomb_friction */
     const iiwa14_real_t t199 = parameters[FV4] * (IIWA14_C(160.0) * dq[3]) + parameters[FC4] * t198
         + parameters[IA4] * (IIWA14_C(160.0) * ddq[3]);
     input[3] = IIWA14_C(10.0) * t199 + IIWA14_C(-0.0625) * t169;
-    const iiwa14_real_t t200 = iiwa14_sign(dq[4]);
+    const iiwa14_real_t t200 = iiwa14_sign(dq[4]); /* joint j5: coulomb_friction */
     const iiwa14_real_t t201 = parameters[FV5] * (IIWA14_C(1.0e2) * dq[4]) + parameters[FC5] * t200
         + parameters[IA5] * (IIWA14_C(1.0e2) * ddq[4]);
     input[4] = IIWA14_C(12.5) * t201 + IIWA14_C(-0.125) * t157;
-    const iiwa14_real_t t202 = iiwa14_sign(dq[5]);
+    const iiwa14_real_t t202 = iiwa14_sign(dq[5]); /* joint j6: coulomb_friction */
     const iiwa14_real_t t203 = parameters[FV6] * (IIWA14_C(160.0) * dq[5]) + parameters[FC6] * t202
         + parameters[IA6] * (IIWA14_C(160.0) * ddq[5]);
     input[5] = IIWA14_C(20.0) * t203 + IIWA14_C(-0.125) * t138;
-    const iiwa14_real_t t204 = iiwa14_sign(dq[6]);
+    const iiwa14_real_t t204 = iiwa14_sign(dq[6]); /* joint j7: coulomb_friction */
     const iiwa14_real_t t205 = parameters[FV7] * (IIWA14_C(160.0) * dq[6]) + parameters[FC7] * t204
         + parameters[IA7] * (IIWA14_C(160.0) * ddq[6]);
     input[6] = IIWA14_C(20.0) * t205 + IIWA14_C(0.125) * t126;
@@ -391,6 +431,7 @@ int iiwa14_inverse_dynamics_derivatives(
     const iiwa14_real_t t212 = parameters[XX7R] - t211;
     const iiwa14_real_t t213 = parameters[XZ7R] * t78 + t74 * t212;
     const iiwa14_real_t t214 = parameters[YZ7R] * t73 + t74 * t211;
+    /* link j7: inertia, momentum beyond */
     const iiwa14_real_t t215 = t63 * (t210 - t208) + t71 * (t213 + t214);
     const iiwa14_real_t t216 = t63 * t215;
     const iiwa14_real_t t217 = parameters[XZ6] * t58;
@@ -408,273 +449,314 @@ int iiwa14_inverse_dynamics_derivatives(
     const iiwa14_real_t t229 = t73 * t228 - parameters[YZ7R] * t74;
     const iiwa14_real_t t230 = parameters[XZ7R] * t74 + t78 * t228;
     const iiwa14_real_t t231 = t59 * t225 - parameters[YZ6] * t58 + (t71 * t230 - t63 * t229);
+    /* link j6: inertia, momentum beyond */
     const iiwa14_real_t t232 = t56 * (t222 - t219) + t39 * (t231 - t227);
     const iiwa14_real_t t233 = t56 * t232;
     const iiwa14_real_t t234 = parameters[XZ5] * t16;
     const iiwa14_real_t t235 = parameters[XY5] * t52;
     const iiwa14_real_t t236 = t234 - t235 + (t222 - t233);
-    const iiwa14_real_t t237 = t217 - t221 + (t208 + t216);
+    const iiwa14_real_t t237 = t217 - t221 + (t208 + t216); /* link j7: inertia, momentum beyond */
     const iiwa14_real_t t238 = parameters[YZ5] * t15;
-    const iiwa14_real_t t239 = t235 + t238 + t237;
-    const iiwa14_real_t t240 = t71 * t215;
+    const iiwa14_real_t t239 = t235 + t238 + t237; /* link j6: inertia, momentum beyond */
+    const iiwa14_real_t t240 = t71 * t215; /* link j7: inertia, momentum beyond */
     const iiwa14_real_t t241 = t225 - parameters[ZZ6R];
     const iiwa14_real_t t242 = parameters[YZ6] * t59 - t58 * t241 + (t240 - t214);
     const iiwa14_real_t t243 = t68 * t241 - parameters[XZ6] * t59 + (t63 * t224 - t71 * t223);
     const iiwa14_real_t t244 = IIWA14_C(0.5) * (parameters[XX5R] + parameters[ZZ5R]);
+    /* link j6: inertia, momentum beyond */
     const iiwa14_real_t t245 = t56 * t242 - t39 * t243 - (parameters[YZ5] * t16 + t52 * t244);
+    /* link j7: inertia, momentum beyond */
     const iiwa14_real_t t246 = t213 - t240 - (parameters[XY6] * t68 + t58 * t226);
     const iiwa14_real_t t247 = t71 * t229 + t63 * t230 - (parameters[XY6] * t58 + t68 * t225);
     const iiwa14_real_t t248 = t244 - parameters[XX5R];
+    /* link j6: inertia, momentum beyond */
     const iiwa14_real_t t249 = parameters[XZ5] * t15 - t52 * t248 + (t56 * t246 + t39 * t247);
+    /* link j5: inertia, momentum beyond */
     const iiwa14_real_t t250 = t11 * (t236 - t239) + t14 * (t245 - t249);
     const iiwa14_real_t t251 = t11 * t250;
+    /* link j7: column of the mass matrix */
     const iiwa14_real_t t252 = t63 * parameters[MY7] + t71 * parameters[MX7];
-    const iiwa14_real_t t253 = parameters[MY5R] + t252;
+    const iiwa14_real_t t253 = parameters[MY5R] + t252; /* link j6: inertia of it and all beyond */
+    /* link j7: column of the mass matrix */
     const iiwa14_real_t t254 = t71 * parameters[MY7] - t63 * parameters[MX7];
-    const iiwa14_real_t t255 = parameters[MX6] - t254;
-    const iiwa14_real_t t256 = t56 * t255 - t39 * parameters[MY6R];
-    const iiwa14_real_t t257 = parameters[MX5] + t256;
-    const iiwa14_real_t t258 = t14 * t253 - t11 * t257;
-    const iiwa14_real_t t259 = IIWA14_C(0.4) * t13;
-    const iiwa14_real_t t260 = t258 * t259;
+    const iiwa14_real_t t255 = parameters[MX6] - t254; /* link j7: inertia of it and all beyond */
+    const iiwa14_real_t t256 = t56 * t255 - t39 * parameters[MY6R]; /* link j6: column of the mass matrix */
+    const iiwa14_real_t t257 = parameters[MX5] + t256; /* link j6: inertia of it and all beyond */
+    const iiwa14_real_t t258 = t14 * t253 - t11 * t257; /* link j5: column of the mass matrix */
+    const iiwa14_real_t t259 = IIWA14_C(0.4) * t13; /* link j5: velocity of its origin */
+    const iiwa14_real_t t260 = t258 * t259; /* link j5: inertia, momentum beyond */
     const iiwa14_real_t t261 = parameters[MY7] * t78 + parameters[MX7] * t73;
-    const iiwa14_real_t t262 = parameters[MX6] * t59 + t261;
+    const iiwa14_real_t t262 = parameters[MX6] * t59 + t261; /* link j7: inertia, momentum beyond */
     const iiwa14_real_t t263 = parameters[MY7] * t74;
     const iiwa14_real_t t264 = parameters[MX7] * t74;
     const iiwa14_real_t t265 = parameters[MY6R] * t59 + (t63 * t263 + t71 * t264);
+    /* link j6: inertia, momentum beyond */
     const iiwa14_real_t t266 = parameters[MY5R] * t15 + parameters[MX5] * t16 + (t56 * t262 - t39 * t265);
-    const iiwa14_real_t t267 = IIWA14_C(0.4) * t266;
-    const iiwa14_real_t t268 = t11 * t253 + t14 * t257;
-    const iiwa14_real_t t269 = IIWA14_C(0.4) * t10;
-    const iiwa14_real_t t270 = t268 * t269;
+    const iiwa14_real_t t267 = IIWA14_C(0.4) * t266; /* link j5: inertia, momentum beyond */
+    const iiwa14_real_t t268 = t11 * t253 + t14 * t257; /* link j5: column of the mass matrix */
+    const iiwa14_real_t t269 = IIWA14_C(0.4) * t10; /* link j5: velocity of its origin */
+    const iiwa14_real_t t270 = t268 * t269; /* link j5: inertia, momentum beyond */
     const iiwa14_real_t t271 = t270 - t260 - t267;
     const iiwa14_real_t t272 = parameters[XZ4] * t40;
     const iiwa14_real_t t273 = parameters[XY4] * t13;
     const iiwa14_real_t t274 = t272 + t273 + (t271 + (t239 + t251 + t260));
-    const iiwa14_real_t t275 = t219 + t233 - (t234 + t238);
+    const iiwa14_real_t t275 = t219 + t233 - (t234 + t238); /* link j6: inertia, momentum beyond */
     const iiwa14_real_t t276 = parameters[YZ4] * t10;
-    const iiwa14_real_t t277 = t276 - t273 + (t271 + (t275 + t267));
-    const iiwa14_real_t t278 = t39 * t232;
+    const iiwa14_real_t t277 = t276 - t273 + (t271 + (t275 + t267)); /* link j5: inertia, momentum beyond */
+    const iiwa14_real_t t278 = t39 * t232; /* link j6: inertia, momentum beyond */
     const iiwa14_real_t t279 = t16 * t248 - parameters[XY5] * t15 + (t227 + t278);
     const iiwa14_real_t t280 = t15 * t244 - parameters[XY5] * t16 + (t39 * t242 + t56 * t243);
     const iiwa14_real_t t281 = IIWA14_C(-0.5) * (parameters[XX4R] + parameters[ZZ4R]);
     const iiwa14_real_t t282 = parameters[XX4R] + t281;
+    /* link j5: inertia, momentum beyond */
     const iiwa14_real_t t283 = parameters[XZ4] * t10 - t13 * t282 + (t11 * t279 - t14 * t280);
     const iiwa14_real_t t284 = parameters[ZZ5R] - t244;
+    /* link j6: inertia, momentum beyond */
     const iiwa14_real_t t285 = t16 * t284 - parameters[YZ5] * t52 + (t278 - t231);
     const iiwa14_real_t t286 = t39 * t246 - t56 * t247 - (parameters[XZ5] * t52 + t15 * t284);
     const iiwa14_real_t t287 = parameters[MY5R] * t52 + (t56 * t265 + t39 * t262);
+    /* link j7: inertia, momentum beyond */
     const iiwa14_real_t t288 = parameters[MY6R] * t68 - parameters[MX6] * t58 + (t71 * t263 - t63 * t264);
-    const iiwa14_real_t t289 = t288 - parameters[MX5] * t52;
-    const iiwa14_real_t t290 = t14 * t289 - t11 * t287;
-    const iiwa14_real_t t291 = t56 * parameters[MY6R] + t39 * t255;
+    const iiwa14_real_t t289 = t288 - parameters[MX5] * t52; /* link j6: inertia, momentum beyond */
+    const iiwa14_real_t t290 = t14 * t289 - t11 * t287; /* link j5: inertia, momentum beyond */
+    const iiwa14_real_t t291 = t56 * parameters[MY6R] + t39 * t255; /* link j6: column of the mass matrix */
+    /* link j5: inertia, momentum beyond */
     const iiwa14_real_t t292 = t11 * t285 + t14 * t286 + (IIWA14_C(-0.4) * t290 + t291 * t259);
     const iiwa14_real_t t293 = parameters[YZ4] * t40 + t13 * t281 + t292;
+    /* link j4: inertia, momentum beyond */
     const iiwa14_real_t t294 = t5 * (t277 - t274) + t9 * (t293 + t283);
     const iiwa14_real_t t295 = t5 * t294;
     const iiwa14_real_t t296 = parameters[XZ3] * t12;
     const iiwa14_real_t t297 = parameters[XY3] * t8;
     const iiwa14_real_t t298 = t296 - t297 + (t277 - t295);
+    /* link j5: inertia, momentum beyond */
     const iiwa14_real_t t299 = t271 + (t236 - t251 - t270) - (t272 + t276);
     const iiwa14_real_t t300 = parameters[YZ3] * t4;
-    const iiwa14_real_t t301 = t297 + t300 + t299;
-    const iiwa14_real_t t302 = t14 * t250;
+    const iiwa14_real_t t301 = t297 + t300 + t299; /* link j4: inertia, momentum beyond */
+    const iiwa14_real_t t302 = t14 * t250; /* link j5: inertia, momentum beyond */
     const iiwa14_real_t t303 = parameters[ZZ4R] + t281;
     const iiwa14_real_t t304 = t302 - t245 - t268 * t259 - (parameters[YZ4] * t13 + t40 * t303);
     const iiwa14_real_t t305 = t10 * t303 - parameters[XZ4] * t13 - (t14 * t279 + t11 * t280);
     const iiwa14_real_t t306 = IIWA14_C(0.5) * (parameters[XX3R] + parameters[ZZ3R]);
+    /* link j4: inertia, momentum beyond */
     const iiwa14_real_t t307 = parameters[YZ3] * t12 + t8 * t306 + (t5 * t304 + t9 * t305);
+    /* link j5: inertia, momentum beyond */
     const iiwa14_real_t t308 = parameters[XY4] * t10 + t40 * t282 + (t249 + t302 + t258 * t269);
     const iiwa14_real_t t309 = t14 * t287 + t11 * t289;
     const iiwa14_real_t t310 = t11 * t286 - t14 * t285 - (IIWA14_C(0.4) * t309 + t291 * t269);
     const iiwa14_real_t t311 = parameters[XY4] * t40 + t10 * t281 - t310;
     const iiwa14_real_t t312 = parameters[XX3R] - t306;
+    /* link j4: inertia, momentum beyond */
     const iiwa14_real_t t313 = parameters[XZ3] * t4 + t8 * t312 + (t5 * t308 - t9 * t311);
+    /* link j3: inertia, momentum beyond */
     const iiwa14_real_t t314 = t2 * (t301 - t298) + t3 * (t307 + t313);
     const iiwa14_real_t t315 = t2 * t314;
-    const iiwa14_real_t t316 = parameters[MY3R] + t268;
-    const iiwa14_real_t t317 = parameters[MX4] - t258;
+    const iiwa14_real_t t316 = parameters[MY3R] + t268; /* link j4: inertia of it and all beyond */
+    const iiwa14_real_t t317 = parameters[MX4] - t258; /* link j5: inertia of it and all beyond */
     const iiwa14_real_t t318 = parameters[MY4R] - t291;
-    const iiwa14_real_t t319 = t9 * t318 - t5 * t317;
-    const iiwa14_real_t t320 = parameters[MX3] - t319;
-    const iiwa14_real_t t321 = t2 * t320 - t3 * t316;
-    const iiwa14_real_t t322 = IIWA14_C(0.42) * dq[1];
-    const iiwa14_real_t t323 = t321 * t322;
-    const iiwa14_real_t t324 = parameters[MY4R] * t13 + t290;
+    const iiwa14_real_t t319 = t9 * t318 - t5 * t317; /* link j4: column of the mass matrix */
+    const iiwa14_real_t t320 = parameters[MX3] - t319; /* link j4: inertia of it and all beyond */
+    const iiwa14_real_t t321 = t2 * t320 - t3 * t316; /* link j3: column of the mass matrix */
+    const iiwa14_real_t t322 = IIWA14_C(0.42) * dq[1]; /* link j3: velocity of its origin */
+    const iiwa14_real_t t323 = t321 * t322; /* link j3: inertia, momentum beyond */
+    const iiwa14_real_t t324 = parameters[MY4R] * t13 + t290; /* link j5: inertia, momentum beyond */
     const iiwa14_real_t t325 = parameters[MX4] * t13 + t266;
+    /* link j4: inertia, momentum beyond */
     const iiwa14_real_t t326 = t9 * t324 - t5 * t325 - (parameters[MY3R] * t4 + parameters[MX3] * t12);
-    const iiwa14_real_t t327 = IIWA14_C(-0.42) * t326;
-    const iiwa14_real_t t328 = t2 * t316 + t3 * t320;
-    const iiwa14_real_t t329 = IIWA14_C(-0.42) * t1;
-    const iiwa14_real_t t330 = t328 * t329;
+    const iiwa14_real_t t327 = IIWA14_C(-0.42) * t326; /* link j3: inertia, momentum beyond */
+    const iiwa14_real_t t328 = t2 * t316 + t3 * t320; /* link j3: column of the mass matrix */
+    const iiwa14_real_t t329 = IIWA14_C(-0.42) * t1; /* link j3: velocity of its origin */
+    const iiwa14_real_t t330 = t328 * t329; /* link j3: inertia, momentum beyond */
     const iiwa14_real_t t331 = t323 - t330 - t327;
     const iiwa14_real_t t332 = parameters[XZ2] * t7;
     const iiwa14_real_t t333 = parameters[XY2] * dq[1];
     const iiwa14_real_t t334 = t331 + (t301 - t315 - t323) - (t332 + t333);
-    const iiwa14_real_t t335 = t274 + t295 - (t296 + t300);
+    const iiwa14_real_t t335 = t274 + t295 - (t296 + t300); /* link j4: inertia, momentum beyond */
     const iiwa14_real_t t336 = parameters[YZ2] * t1;
-    const iiwa14_real_t t337 = t333 + t336 + (t331 + (t335 + t327));
-    const iiwa14_real_t t338 = t9 * t294;
+    const iiwa14_real_t t337 = t333 + t336 + (t331 + (t335 + t327)); /* link j3: inertia, momentum beyond */
+    const iiwa14_real_t t338 = t9 * t294; /* link j4: inertia, momentum beyond */
     const iiwa14_real_t t339 = t283 - t338 - (parameters[XY3] * t4 + t12 * t312);
     const iiwa14_real_t t340 = t4 * t306 - parameters[XY3] * t12 + (t9 * t304 - t5 * t305);
     const iiwa14_real_t t341 = IIWA14_C(0.5) * (parameters[XX2R] + parameters[ZZ2R]);
     const iiwa14_real_t t342 = parameters[XX2R] - t341;
+    /* link j3: inertia, momentum beyond */
     const iiwa14_real_t t343 = parameters[XZ2] * t1 + dq[1] * t342 + (t3 * t340 - t2 * t339);
     const iiwa14_real_t t344 = parameters[ZZ3R] - t306;
+    /* link j4: inertia, momentum beyond */
     const iiwa14_real_t t345 = parameters[YZ3] * t8 - t12 * t344 + (t338 - t293);
     const iiwa14_real_t t346 = parameters[XZ3] * t8 + t4 * t344 + (t9 * t308 + t5 * t311);
     const iiwa14_real_t t347 = t5 * t324 + t9 * t325 - parameters[MY3R] * t8;
+    /* link j5: inertia, momentum beyond */
     const iiwa14_real_t t348 = t309 - (parameters[MY4R] * t10 + parameters[MX4] * t40);
-    const iiwa14_real_t t349 = t348 - parameters[MX3] * t8;
-    const iiwa14_real_t t350 = t5 * t318 + t9 * t317;
+    const iiwa14_real_t t349 = t348 - parameters[MX3] * t8; /* link j4: inertia, momentum beyond */
+    const iiwa14_real_t t350 = t5 * t318 + t9 * t317; /* link j4: column of the mass matrix */
+    /* link j3: inertia, momentum beyond */
     const iiwa14_real_t t351 = IIWA14_C(0.42) * (t2 * t347 + t3 * t349) + t350 * t322;
     const iiwa14_real_t t352 = dq[1] * t341 - parameters[YZ2] * t7 + (t2 * t345 + t3 * t346 + t351);
+    /* link j2: inertia, momentum beyond */
     const iiwa14_real_t t353 = t6 * (t6 * (t337 - t334) + t0 * (t352 + t343));
     input_by_dq[0] = IIWA14_C(1.6e3) * parameters[FV1] + IIWA14_C(0.125) * (t334 + t353);
-    const iiwa14_real_t t354 = t3 * t314;
+    const iiwa14_real_t t354 = t3 * t314; /* link j3: inertia, momentum beyond */
     const iiwa14_real_t t355 = parameters[XY2] * t1 - t7 * t342 + (t354 - t313 - t321 * t329);
-    const iiwa14_real_t t356 = IIWA14_C(2.0) * t355;
+    const iiwa14_real_t t356 = IIWA14_C(2.0) * t355; /* link j2: derivatives */
+    /* link j3: inertia, momentum beyond */
     const iiwa14_real_t t357 = IIWA14_C(0.42) * (t2 * t349 - t3 * t347) + t350 * t329;
     const iiwa14_real_t t358 = parameters[XY2] * t7 + t1 * t341 + (t3 * t345 - t2 * t346 - t357);
-    const iiwa14_real_t t359 = IIWA14_C(2.0) * t358;
+    const iiwa14_real_t t359 = IIWA14_C(2.0) * t358; /* link j2: derivatives */
     input_by_dq[7] = IIWA14_C(0.0625) * (t0 * t356 - t6 * t359);
-    const iiwa14_real_t t360 = IIWA14_C(2.0) * t339;
+    const iiwa14_real_t t360 = IIWA14_C(2.0) * t339; /* link j3: derivatives */
     const iiwa14_real_t t361 = IIWA14_C(2.0) * t340;
     const iiwa14_real_t t362 = t3 * t361 - t2 * t360;
     const iiwa14_real_t t363 = IIWA14_C(2.0) * t335;
-    const iiwa14_real_t t364 = IIWA14_C(0.84) * t1;
+    const iiwa14_real_t t364 = IIWA14_C(0.84) * t1; /* link j7: derivatives */
     const iiwa14_real_t t365 = IIWA14_C(0.84) * dq[1];
-    const iiwa14_real_t t366 = t363 + (t328 * t364 + t321 * t365);
+    const iiwa14_real_t t366 = t363 + (t328 * t364 + t321 * t365); /* link j3: derivatives */
     input_by_dq[14] = IIWA14_C(0.0625) * (t0 * t362 + t6 * t366);
-    const iiwa14_real_t t367 = IIWA14_C(-2.0) * t308;
+    const iiwa14_real_t t367 = IIWA14_C(-2.0) * t308; /* link j4: derivatives */
     const iiwa14_real_t t368 = IIWA14_C(-2.0) * t311;
     const iiwa14_real_t t369 = t5 * t367 - t9 * t368;
     const iiwa14_real_t t370 = IIWA14_C(-2.0) * t299;
     const iiwa14_real_t t371 = t3 * t370 - t2 * t369 + t319 * t364;
     const iiwa14_real_t t372 = t9 * t367 + t5 * t368;
-    const iiwa14_real_t t373 = t2 * t350;
+    const iiwa14_real_t t373 = t2 * t350; /* link j4: column of the mass matrix */
     const iiwa14_real_t t374 = t3 * t350;
-    const iiwa14_real_t t375 = t372 + (t373 * t364 - t374 * t365);
+    const iiwa14_real_t t375 = t372 + (t373 * t364 - t374 * t365); /* link j4: derivatives */
     input_by_dq[21] = IIWA14_C(0.0625) * (t0 * t371 + t6 * t375);
-    const iiwa14_real_t t376 = IIWA14_C(2.0) * t279;
+    const iiwa14_real_t t376 = IIWA14_C(2.0) * t279; /* link j5: derivatives */
     const iiwa14_real_t t377 = IIWA14_C(2.0) * t280;
     const iiwa14_real_t t378 = t11 * t376 - t14 * t377;
     const iiwa14_real_t t379 = IIWA14_C(2.0) * t275;
-    const iiwa14_real_t t380 = IIWA14_C(0.8) * t10;
+    const iiwa14_real_t t380 = IIWA14_C(0.8) * t10; /* link j7: derivatives */
     const iiwa14_real_t t381 = IIWA14_C(-0.8) * t13;
-    const iiwa14_real_t t382 = t379 + (t268 * t380 + t258 * t381);
+    const iiwa14_real_t t382 = t379 + (t268 * t380 + t258 * t381); /* link j5: derivatives */
     const iiwa14_real_t t383 = t5 * t378 - t9 * t382;
     const iiwa14_real_t t384 = t14 * t376 + t11 * t377;
-    const iiwa14_real_t t385 = t9 * t268;
-    const iiwa14_real_t t386 = t3 * t384 - t2 * t383 + t385 * t364;
+    const iiwa14_real_t t385 = t9 * t268; /* link j5: column of the mass matrix */
+    const iiwa14_real_t t386 = t3 * t384 - t2 * t383 + t385 * t364; /* link j5: derivatives */
     const iiwa14_real_t t387 = t9 * t378 + t5 * t382;
-    const iiwa14_real_t t388 = t5 * t268;
+    const iiwa14_real_t t388 = t5 * t268; /* link j5: column of the mass matrix */
     const iiwa14_real_t t389 = t2 * t388 - t3 * t258;
     const iiwa14_real_t t390 = t3 * t388 + t2 * t258;
-    const iiwa14_real_t t391 = t387 + (t389 * t364 - t390 * t365);
+    const iiwa14_real_t t391 = t387 + (t389 * t364 - t390 * t365); /* link j5: derivatives */
     input_by_dq[28] = IIWA14_C(0.125) * (t0 * t386 + t6 * t391);
-    const iiwa14_real_t t392 = IIWA14_C(2.0) * t246;
+    const iiwa14_real_t t392 = IIWA14_C(2.0) * t246; /* link j6: derivatives */
     const iiwa14_real_t t393 = IIWA14_C(2.0) * t247;
     const iiwa14_real_t t394 = t56 * t392 + t39 * t393;
     const iiwa14_real_t t395 = IIWA14_C(2.0) * t237;
     const iiwa14_real_t t396 = t11 * t394 - t14 * t395 - t256 * t380;
     const iiwa14_real_t t397 = t56 * t393 - t39 * t392;
-    const iiwa14_real_t t398 = t11 * t291;
+    const iiwa14_real_t t398 = t11 * t291; /* link j6: column of the mass matrix */
     const iiwa14_real_t t399 = t14 * t291;
-    const iiwa14_real_t t400 = t397 + (t398 * t380 + t399 * t381);
+    const iiwa14_real_t t400 = t397 + (t398 * t380 + t399 * t381); /* link j6: derivatives */
     const iiwa14_real_t t401 = t5 * t396 - t9 * t400;
     const iiwa14_real_t t402 = t14 * t394 + t11 * t395 - t256 * t381;
-    const iiwa14_real_t t403 = t9 * t398 + t5 * t256;
-    const iiwa14_real_t t404 = t3 * t402 - t2 * t401 + t403 * t364;
+    const iiwa14_real_t t403 = t9 * t398 + t5 * t256; /* link j6: column of the mass matrix */
+    const iiwa14_real_t t404 = t3 * t402 - t2 * t401 + t403 * t364; /* link j6: derivatives */
     const iiwa14_real_t t405 = t9 * t396 + t5 * t400;
-    const iiwa14_real_t t406 = t9 * t256 - t5 * t398;
+    const iiwa14_real_t t406 = t9 * t256 - t5 * t398; /* link j6: column of the mass matrix */
     const iiwa14_real_t t407 = t2 * t406 + t3 * t399;
     const iiwa14_real_t t408 = t3 * t406 - t2 * t399;
-    const iiwa14_real_t t409 = t405 + (t408 * t365 - t407 * t364);
+    const iiwa14_real_t t409 = t405 + (t408 * t365 - t407 * t364); /* link j6: derivatives */
     input_by_dq[35] = IIWA14_C(0.125) * (t0 * t404 + t6 * t409);
-    const iiwa14_real_t t410 = IIWA14_C(-2.0) * t223;
+    const iiwa14_real_t t410 = IIWA14_C(-2.0) * t223; /* link j7: derivatives */
     const iiwa14_real_t t411 = IIWA14_C(2.0) * t224;
     const iiwa14_real_t t412 = t63 * t410 - t71 * t411;
     const iiwa14_real_t t413 = IIWA14_C(-2.0) * t220;
     const iiwa14_real_t t414 = t56 * t412 + t39 * t413;
     const iiwa14_real_t t415 = t71 * t410 + t63 * t411;
-    const iiwa14_real_t t416 = t39 * t252;
-    const iiwa14_real_t t417 = t11 * t414 - t14 * t415 + t416 * t380;
+    const iiwa14_real_t t416 = t39 * t252; /* link j7: column of the mass matrix */
+    const iiwa14_real_t t417 = t11 * t414 - t14 * t415 + t416 * t380; /* link j7: derivatives */
     const iiwa14_real_t t418 = t56 * t413 - t39 * t412;
-    const iiwa14_real_t t419 = t56 * t252;
+    const iiwa14_real_t t419 = t56 * t252; /* link j7: column of the mass matrix */
     const iiwa14_real_t t420 = t14 * t254 - t11 * t419;
     const iiwa14_real_t t421 = t14 * t419 + t11 * t254;
-    const iiwa14_real_t t422 = t418 + (t421 * t381 - t420 * t380);
+    const iiwa14_real_t t422 = t418 + (t421 * t381 - t420 * t380); /* link j7: derivatives */
     const iiwa14_real_t t423 = t5 * t417 - t9 * t422;
     const iiwa14_real_t t424 = t14 * t414 + t11 * t415 + t416 * t381;
-    const iiwa14_real_t t425 = t9 * t420 + t5 * t416;
-    const iiwa14_real_t t426 = t3 * t424 - t2 * t423 - t425 * t364;
+    const iiwa14_real_t t425 = t9 * t420 + t5 * t416; /* link j7: column of the mass matrix */
+    const iiwa14_real_t t426 = t3 * t424 - t2 * t423 - t425 * t364; /* link j7: derivatives */
     const iiwa14_real_t t427 = t9 * t417 + t5 * t422;
-    const iiwa14_real_t t428 = t5 * t420 - t9 * t416;
+    const iiwa14_real_t t428 = t5 * t420 - t9 * t416; /* link j7: column of the mass matrix */
     const iiwa14_real_t t429 = t2 * t428 + t3 * t421;
     const iiwa14_real_t t430 = t3 * t428 - t2 * t421;
-    const iiwa14_real_t t431 = t427 + (t430 * t365 - t429 * t364);
+    const iiwa14_real_t t431 = t427 + (t430 * t365 - t429 * t364); /* link j7: derivatives */
     input_by_dq[42] = IIWA14_C(0.125) * (t0 * t426 + t6 * t431);
+    /* link j7: inertia of it and all beyond */
     const iiwa14_real_t t432 = parameters[XY7] * (IIWA14_C(2.0) * t71) - t63 * parameters[XX7R];
     const iiwa14_real_t t433 = t63 * t432;
     const iiwa14_real_t t434 = t433 - parameters[XX6R];
+    /* link j7: column of the mass matrix */
     const iiwa14_real_t t435 = t63 * parameters[XZ7R] - t71 * parameters[YZ7R];
-    const iiwa14_real_t t436 = t435 - parameters[XY6];
+    const iiwa14_real_t t436 = t435 - parameters[XY6]; /* link j7: inertia of it and all beyond */
+    /* link j6: inertia of it and all beyond */
     const iiwa14_real_t t437 = t56 * (parameters[ZZ7] + t434) - t436 * (IIWA14_C(2.0) * t39);
     const iiwa14_real_t t438 = t56 * t437;
     const iiwa14_real_t t439 = parameters[XX5R] + (parameters[ZZ7] - t438);
+    /* link j7: inertia of it and all beyond */
     const iiwa14_real_t t440 = parameters[ZZ6R] + (parameters[XX7R] + t433);
     const iiwa14_real_t t441 = parameters[XZ6] + (parameters[XY7] - t71 * t432);
+    /* link j7: column of the mass matrix */
     const iiwa14_real_t t442 = t71 * parameters[XZ7R] + t63 * parameters[YZ7R];
-    const iiwa14_real_t t443 = parameters[YZ6] - t442;
-    const iiwa14_real_t t444 = t56 * t441 - t39 * t443;
-    const iiwa14_real_t t445 = parameters[XY5] + t444;
+    const iiwa14_real_t t443 = parameters[YZ6] - t442; /* link j7: inertia of it and all beyond */
+    const iiwa14_real_t t444 = t56 * t441 - t39 * t443; /* link j6: column of the mass matrix */
+    const iiwa14_real_t t445 = parameters[XY5] + t444; /* link j6: inertia of it and all beyond */
+    /* link j5: inertia of it and all beyond */
     const iiwa14_real_t t446 = t11 * (t439 - t440) + t445 * (IIWA14_C(-2.0) * t14);
     const iiwa14_real_t t447 = t11 * t446;
     const iiwa14_real_t t448 = IIWA14_C(-0.8) * t291;
     const iiwa14_real_t t449 = parameters[XX4R] + (t440 + t447 + t448);
-    const iiwa14_real_t t450 = t434 - t438 - parameters[ZZ5R];
+    const iiwa14_real_t t450 = t434 - t438 - parameters[ZZ5R]; /* link j6: inertia of it and all beyond */
     const iiwa14_real_t t451 = parameters[XZ5] + (t436 + t39 * t437);
-    const iiwa14_real_t t452 = t39 * t441 + t56 * t443;
-    const iiwa14_real_t t453 = parameters[YZ5] - t452;
+    const iiwa14_real_t t452 = t39 * t441 + t56 * t443; /* link j6: column of the mass matrix */
+    const iiwa14_real_t t453 = parameters[YZ5] - t452; /* link j6: inertia of it and all beyond */
+    /* link j5: column of the mass matrix */
     const iiwa14_real_t t454 = t11 * t451 - t14 * t453 + IIWA14_C(0.4) * t258;
-    const iiwa14_real_t t455 = parameters[XY4] + t454;
+    const iiwa14_real_t t455 = parameters[XY4] + t454; /* link j5: inertia of it and all beyond */
+    /* link j4: inertia of it and all beyond */
     const iiwa14_real_t t456 = t5 * (t450 + t449) + t455 * (IIWA14_C(-2.0) * t9);
     const iiwa14_real_t t457 = t5 * t456;
     const iiwa14_real_t t458 = parameters[XX3R] + (t457 - t450);
+    /* link j5: inertia of it and all beyond */
     const iiwa14_real_t t459 = parameters[ZZ4R] + (t439 - t447 + t448);
     const iiwa14_real_t t460 = t445 + t14 * t446 - parameters[XZ4];
+    /* link j5: column of the mass matrix */
     const iiwa14_real_t t461 = t14 * t451 + t11 * t453 + IIWA14_C(-0.4) * t268;
-    const iiwa14_real_t t462 = t461 - parameters[YZ4];
-    const iiwa14_real_t t463 = t9 * t462 - t5 * t460;
-    const iiwa14_real_t t464 = parameters[XY3] - t463;
+    const iiwa14_real_t t462 = t461 - parameters[YZ4]; /* link j5: inertia of it and all beyond */
+    const iiwa14_real_t t463 = t9 * t462 - t5 * t460; /* link j4: column of the mass matrix */
+    const iiwa14_real_t t464 = parameters[XY3] - t463; /* link j4: inertia of it and all beyond */
+    /* link j3: inertia of it and all beyond */
     const iiwa14_real_t t465 = t2 * (t459 - t458) + t464 * (IIWA14_C(2.0) * t3);
     const iiwa14_real_t t466 = t2 * t465;
     const iiwa14_real_t t467 = IIWA14_C(0.84) * t350;
     const iiwa14_real_t t468 = parameters[XX2R] + (t459 - t466 + t467);
-    const iiwa14_real_t t469 = parameters[ZZ3R] + (t449 - t457);
+    const iiwa14_real_t t469 = parameters[ZZ3R] + (t449 - t457); /* link j4: inertia of it and all beyond */
     const iiwa14_real_t t470 = parameters[XZ3] + (t455 + t9 * t456);
-    const iiwa14_real_t t471 = t9 * t460 + t5 * t462;
-    const iiwa14_real_t t472 = parameters[YZ3] + t471;
+    const iiwa14_real_t t471 = t9 * t460 + t5 * t462; /* link j4: column of the mass matrix */
+    const iiwa14_real_t t472 = parameters[YZ3] + t471; /* link j4: inertia of it and all beyond */
+    /* link j3: column of the mass matrix */
     const iiwa14_real_t t473 = t3 * t472 - t2 * t470 + IIWA14_C(0.42) * t321;
-    const iiwa14_real_t t474 = parameters[XY2] + t473;
+    const iiwa14_real_t t474 = parameters[XY2] + t473; /* link j3: inertia of it and all beyond */
+    /* link j2: inertia of it and all beyond */
     const iiwa14_real_t t475 = t6 * (t6 * (t469 - t468) + t474 * (IIWA14_C(2.0) * t0));
     input_by_ddq[0] = IIWA14_C(0.0625) * (parameters[ZZ1R] + (t468 + t475));
-    const iiwa14_real_t t476 = t3 * t465 - t464 - parameters[XZ2];
+    const iiwa14_real_t t476 = t3 * t465 - t464 - parameters[XZ2]; /* link j3: inertia of it and all beyond */
+    /* link j3: column of the mass matrix */
     const iiwa14_real_t t477 = IIWA14_C(0.42) * t328 - (t3 * t470 + t2 * t472);
-    const iiwa14_real_t t478 = parameters[YZ2] + t477;
+    const iiwa14_real_t t478 = parameters[YZ2] + t477; /* link j3: inertia of it and all beyond */
     const iiwa14_real_t t479 = IIWA14_C(0.0625) * (t0 * t476 - t6 * t478);
     input_by_ddq[7] = t479;
     const iiwa14_real_t t480 = IIWA14_C(0.0625) * (t0 * t473 + t6 * t469);
     input_by_ddq[14] = t480;
+    /* link j4: column of the mass matrix */
     const iiwa14_real_t t481 = IIWA14_C(-0.42) * t374 - (t2 * t463 + t3 * t459);
     const iiwa14_real_t t482 = IIWA14_C(0.0625) * (t0 * t481 - t6 * t471);
     input_by_ddq[21] = t482;
-    const iiwa14_real_t t483 = t5 * t454 + t9 * t450;
+    const iiwa14_real_t t483 = t5 * t454 + t9 * t450; /* link j5: column of the mass matrix */
     const iiwa14_real_t t484 = t3 * t461 - t2 * t483 + IIWA14_C(-0.42) * t390;
     const iiwa14_real_t t485 = t9 * t454 - t5 * t450;
     const iiwa14_real_t t486 = t0 * t484 + t6 * t485;
     input_by_ddq[28] = IIWA14_C(0.125) * t486;
+    /* link j6: column of the mass matrix */
     const iiwa14_real_t t487 = t11 * t444 - t14 * t440 + IIWA14_C(0.4) * t399;
     const iiwa14_real_t t488 = t5 * t487 + t9 * t452;
     const iiwa14_real_t t489 = t14 * t444 + t11 * t440 + IIWA14_C(-0.4) * t398;
@@ -682,7 +764,7 @@ int iiwa14_inverse_dynamics_derivatives(
     const iiwa14_real_t t491 = t9 * t487 - t5 * t452;
     const iiwa14_real_t t492 = t0 * t490 + t6 * t491;
     input_by_ddq[35] = IIWA14_C(0.125) * t492;
-    const iiwa14_real_t t493 = t56 * t435 + t39 * parameters[ZZ7];
+    const iiwa14_real_t t493 = t56 * t435 + t39 * parameters[ZZ7]; /* link j7: column of the mass matrix */
     const iiwa14_real_t t494 = t11 * t493 - t14 * t442 + IIWA14_C(0.4) * t421;
     const iiwa14_real_t t495 = t39 * t435 - t56 * parameters[ZZ7];
     const iiwa14_real_t t496 = t5 * t494 + t9 * t495;
@@ -691,50 +773,73 @@ int iiwa14_inverse_dynamics_derivatives(
     const iiwa14_real_t t499 = t9 * t494 - t5 * t495;
     const iiwa14_real_t t500 = t0 * t498 + t6 * t499;
     input_by_ddq[42] = IIWA14_C(0.125) * t500;
-    const iiwa14_real_t t501 = IIWA14_C(2.0) * t7;
+    const iiwa14_real_t t501 = IIWA14_C(2.0) * t7; /* link j2: derivatives */
     const iiwa14_real_t t502 = IIWA14_C(-2.0) * t1;
-    const iiwa14_real_t t503 = t94 + t180;
+    const iiwa14_real_t t503 = t94 + t180; /* link j3: motion */
+    /* link j2: derivatives */
     const iiwa14_real_t t504 = t334 * t501 + t352 * t502 + (t468 * t20 - t474 * t27 - t476 * t503);
-    const iiwa14_real_t t505 = t469 * t27;
+    const iiwa14_real_t t505 = t469 * t27; /* link j3: derivatives */
+    /* link j2: derivatives */
     const iiwa14_real_t t506 = t343 * t501 + t337 * t502 + (t474 * t20 - t505 + t478 * t503);
-    const iiwa14_real_t t507 = t328 * t96;
+    const iiwa14_real_t t507 = t328 * t96; /* link j3: derivatives */
+    /* link j2: derivatives */
     const iiwa14_real_t t508 = t0 * (t187 + (t504 + t328 * t90)) + t6 * (t182 + (t507 + t506));
     input_by_q[1] = IIWA14_C(0.0625) * t508;
+    /* link j3: inertia of it and all beyond */
     const iiwa14_real_t t509 = parameters[ZZ2R] + (t458 + t466 + t467);
+    /* link j2: derivatives */
     const iiwa14_real_t t510 = t476 * t20 + t478 * t27 - t509 * t503 + (t7 * t356 + t1 * t359);
     const iiwa14_real_t t511 = (parameters[MX2] + t321) * t90 + (parameters[MY2R] - t350) * t96 + t510;
     input_by_q[8] = IIWA14_C(0.0625) * t511;
+    /* link j3: derivatives */
     const iiwa14_real_t t512 = t7 * t362 - t1 * t366 + (t473 * t20 - t505 + t477 * t503);
     input_by_q[15] = IIWA14_C(0.0625) * (t512 + t507);
+    /* link j4: column of the mass matrix */
     const iiwa14_real_t t513 = t3 * t463 - t2 * t459 - IIWA14_C(0.42) * t373;
+    /* link j4: derivatives */
     const iiwa14_real_t t514 = t7 * t371 - t1 * t375 + (t481 * t20 + t471 * t27 - t513 * t503);
     input_by_q[22] = IIWA14_C(0.0625) * (t514 + (t373 * t96 + t319 * t90));
+    /* link j5: column of the mass matrix */
     const iiwa14_real_t t515 = t3 * t483 + t2 * t461 + IIWA14_C(-0.42) * t389;
+    /* link j5: derivatives */
     const iiwa14_real_t t516 = t7 * t386 - t1 * t391 + (t484 * t20 - t485 * t27 - t515 * t503);
     input_by_q[29] = IIWA14_C(0.125) * (t516 + (t389 * t96 + t385 * t90));
+    /* link j6: column of the mass matrix */
     const iiwa14_real_t t517 = t3 * t488 + t2 * t489 + IIWA14_C(0.42) * t407;
+    /* link j6: derivatives */
     const iiwa14_real_t t518 = t7 * t404 - t1 * t409 + (t490 * t20 - t491 * t27 - t517 * t503);
     input_by_q[36] = IIWA14_C(0.125) * (t518 + (t403 * t90 - t407 * t96));
+    /* link j7: column of the mass matrix */
     const iiwa14_real_t t519 = t3 * t496 + t2 * t497 + IIWA14_C(0.42) * t429;
+    /* link j7: derivatives */
     const iiwa14_real_t t520 = t7 * t426 - t1 * t431 + (t498 * t20 - t499 * t27 - t519 * t503);
     input_by_q[43] = IIWA14_C(0.125) * (t520 - (t429 * t96 + t425 * t90));
     const iiwa14_real_t t521 = parameters[ZZ2R] - t341;
+    /* link j3: inertia, momentum beyond */
     const iiwa14_real_t t522 = parameters[YZ2] * dq[1] + t7 * t521 + (t354 - t307 + t328 * t322);
+    /* link j2: derivatives */
     const iiwa14_real_t t523 = t0 * (IIWA14_C(2.0) * t522 + (t468 * t501 + t474 * t502));
+    /* link j3: inertia, momentum beyond */
     const iiwa14_real_t t524 = t3 * t339 + t2 * t340 - (parameters[XZ2] * dq[1] + t1 * t521);
+    /* link j2: derivatives */
     const iiwa14_real_t t525 = t6 * (IIWA14_C(2.0) * t524 + (t474 * t501 + t469 * t502));
     input_by_dq[1] = IIWA14_C(0.0625) * (t523 + t525);
     const iiwa14_real_t t526 = IIWA14_C(2.0) * (t332 - t336 + (t331 + (t298 + t315 + t330)));
     const iiwa14_real_t t527 = IIWA14_C(0.0625) * (t526 + IIWA14_C(2.0) * (t476 * t7 + t478 * t1));
     input_by_dq[8] = IIWA14_C(1.6e3) * parameters[FV2] + t527;
+    /* link j3: derivatives */
     const iiwa14_real_t t528 = t3 * t360 + t2 * t361 + IIWA14_C(2.0) * (t473 * t7 - t469 * t1);
     input_by_dq[15] = IIWA14_C(0.0625) * t528;
+    /* link j4: derivatives */
     const iiwa14_real_t t529 = t3 * t369 + t2 * t370 + t319 * t365 + IIWA14_C(2.0) * (t481 * t7 + t471 * t1);
     input_by_dq[22] = IIWA14_C(0.0625) * t529;
+    /* link j5: derivatives */
     const iiwa14_real_t t530 = t3 * t383 + t2 * t384 + t385 * t365 + IIWA14_C(2.0) * (t484 * t7 - t485 * t1);
     input_by_dq[29] = IIWA14_C(0.125) * t530;
+    /* link j6: derivatives */
     const iiwa14_real_t t531 = t3 * t401 + t2 * t402 + t403 * t365 + IIWA14_C(2.0) * (t490 * t7 - t491 * t1);
     input_by_dq[36] = IIWA14_C(0.125) * t531;
+    /* link j7: derivatives */
     const iiwa14_real_t t532 = t3 * t423 + t2 * t424 - t425 * t365 + IIWA14_C(2.0) * (t498 * t7 - t499 * t1);
     input_by_dq[43] = IIWA14_C(0.125) * t532;
     input_by_ddq[1] = t479;
@@ -746,15 +851,17 @@ int iiwa14_inverse_dynamics_derivatives(
     input_by_ddq[29] = IIWA14_C(0.125) * t515;
     input_by_ddq[36] = IIWA14_C(0.125) * t517;
     input_by_ddq[43] = IIWA14_C(0.125) * t519;
-    const iiwa14_real_t t535 = IIWA14_C(2.0) * t12;
+    const iiwa14_real_t t535 = IIWA14_C(2.0) * t12; /* link j3: derivatives */
     const iiwa14_real_t t536 = IIWA14_C(2.0) * t4;
-    const iiwa14_real_t t537 = t171 + t162;
+    const iiwa14_real_t t537 = t171 + t162; /* link j4: motion */
+    /* link j3: derivatives */
     const iiwa14_real_t t538 = t298 * t535 + t307 * t536 + (t458 * t42 + t464 * t30 - t470 * t537);
     const iiwa14_real_t t539 = t538 + t350 * t93 - t172;
-    const iiwa14_real_t t540 = t459 * t30;
+    const iiwa14_real_t t540 = t459 * t30; /* link j4: derivatives */
+    /* link j3: derivatives */
     const iiwa14_real_t t541 = t313 * t535 + t301 * t536 + (t540 + t464 * t42 - t472 * t537);
-    const iiwa14_real_t t542 = t350 * t100;
-    const iiwa14_real_t t543 = t165 + (t541 - t542);
+    const iiwa14_real_t t542 = t350 * t100; /* link j4: derivatives */
+    const iiwa14_real_t t543 = t165 + (t541 - t542); /* link j3: derivatives */
     const iiwa14_real_t t544 = t177 + (t326 * t536 + (t350 * t30 + t316 * t537));
     const iiwa14_real_t t545 = t326 * t535 + (t320 * t537 + t350 * t42) - t176;
     const iiwa14_real_t t546 = t3 * t543 - t2 * t539 + IIWA14_C(0.42) * (t3 * t544 - t2 * t545);
@@ -766,15 +873,19 @@ int iiwa14_inverse_dynamics_derivatives(
     input_by_q[9] = IIWA14_C(0.0625) * t550;
     const iiwa14_real_t t551 = IIWA14_C(0.0625) * (t548 + (t547 + (t12 * t360 + t4 * t361)));
     input_by_q[16] = t551;
+    /* link j4: derivatives */
     const iiwa14_real_t t552 = t12 * t369 + t4 * t370 + (t463 * t42 - t540 + t471 * t537);
     input_by_q[23] = IIWA14_C(0.0625) * (t552 + t542);
+    /* link j5: derivatives */
     const iiwa14_real_t t553 = t12 * t383 + t4 * t384 + (t483 * t42 + t461 * t30 - t485 * t537);
     input_by_q[30] = IIWA14_C(0.125) * (t553 + (t388 * t100 + t258 * t93));
+    /* link j6: derivatives */
     const iiwa14_real_t t554 = t12 * t401 + t4 * t402 + (t488 * t42 + t489 * t30 - t491 * t537);
     input_by_q[37] = IIWA14_C(0.125) * (t554 + (t399 * t93 - t406 * t100));
+    /* link j7: derivatives */
     const iiwa14_real_t t555 = t12 * t423 + t4 * t424 + (t496 * t42 + t497 * t30 - t499 * t537);
     input_by_q[44] = IIWA14_C(0.125) * (t555 + (t421 * t93 - t428 * t100));
-    const iiwa14_real_t t556 = IIWA14_C(2.0) * t345 - (t458 * t535 + t464 * t536);
+    const iiwa14_real_t t556 = IIWA14_C(2.0) * t345 - (t458 * t535 + t464 * t536); /* link j3: derivatives */
     const iiwa14_real_t t557 = IIWA14_C(2.0) * t346 + (t464 * t535 + t459 * t536);
     const iiwa14_real_t t558 = IIWA14_C(2.0) * t349 + t350 * t536;
     const iiwa14_real_t t559 = IIWA14_C(-2.0) * t347 + t350 * t535;
@@ -801,13 +912,14 @@ int iiwa14_inverse_dynamics_derivatives(
     input_by_ddq[30] = IIWA14_C(0.125) * t485;
     input_by_ddq[37] = IIWA14_C(0.125) * t491;
     input_by_ddq[44] = IIWA14_C(0.125) * t499;
-    const iiwa14_real_t t569 = IIWA14_C(2.0) * t40;
+    const iiwa14_real_t t569 = IIWA14_C(2.0) * t40; /* link j4: derivatives */
     const iiwa14_real_t t570 = IIWA14_C(2.0) * t10;
-    const iiwa14_real_t t571 = t450 * t47;
-    const iiwa14_real_t t572 = t103 + t153;
+    const iiwa14_real_t t571 = t450 * t47; /* link j5: derivatives */
+    const iiwa14_real_t t572 = t103 + t153; /* link j5: motion */
+    /* link j4: derivatives */
     const iiwa14_real_t t573 = t283 * t569 + t277 * t570 + (t455 * t34 - t571 + t462 * t572);
-    const iiwa14_real_t t574 = t268 * t106;
-    const iiwa14_real_t t575 = t154 + (t574 + t573);
+    const iiwa14_real_t t574 = t268 * t106; /* link j5: derivatives */
+    const iiwa14_real_t t575 = t154 + (t574 + t573); /* link j4: derivatives */
     const iiwa14_real_t t576 = t274 * t569 + t293 * t570 + (t449 * t34 + t455 * t47 + t460 * t572);
     const iiwa14_real_t t577 = t159 + (t576 - t268 * t98);
     const iiwa14_real_t t578 = t5 * t577 - t9 * t575;
@@ -826,13 +938,16 @@ int iiwa14_inverse_dynamics_derivatives(
     input_by_q[17] = IIWA14_C(0.0625) * t587;
     const iiwa14_real_t t589 = IIWA14_C(0.0625) * (t40 * t367 + t10 * t368 - t579 - t580);
     input_by_q[24] = t589;
+    /* link j5: derivatives */
     const iiwa14_real_t t590 = t40 * t378 + t10 * t382 + (t454 * t34 - t571 + t461 * t572);
     input_by_q[31] = IIWA14_C(0.125) * (t590 + t574);
+    /* link j6: derivatives */
     const iiwa14_real_t t591 = t40 * t396 + t10 * t400 + (t487 * t34 - t452 * t47 + t489 * t572);
     input_by_q[38] = IIWA14_C(0.125) * (t591 + (t398 * t106 + t256 * t98));
+    /* link j7: derivatives */
     const iiwa14_real_t t592 = t40 * t417 + t10 * t422 + (t494 * t34 - t495 * t47 + t497 * t572);
     input_by_q[45] = IIWA14_C(0.125) * (t592 - (t420 * t106 + t416 * t98));
-    const iiwa14_real_t t593 = IIWA14_C(-2.0) * t304 + (t449 * t569 + t455 * t570);
+    const iiwa14_real_t t593 = IIWA14_C(-2.0) * t304 + (t449 * t569 + t455 * t570); /* link j4: derivatives */
     const iiwa14_real_t t594 = IIWA14_C(2.0) * t305 + (t455 * t569 - t450 * t570);
     const iiwa14_real_t t595 = t9 * t594 - t5 * t593;
     const iiwa14_real_t t596 = t370 + (t460 * t569 + t462 * t570);
@@ -860,15 +975,17 @@ int iiwa14_inverse_dynamics_derivatives(
     input_by_ddq[31] = IIWA14_C(-0.125) * t461;
     input_by_ddq[38] = IIWA14_C(-0.125) * t489;
     input_by_ddq[45] = IIWA14_C(-0.125) * t497;
-    const iiwa14_real_t t606 = IIWA14_C(-2.0) * t16;
+    const iiwa14_real_t t606 = IIWA14_C(-2.0) * t16; /* link j5: derivatives */
     const iiwa14_real_t t607 = IIWA14_C(2.0) * t15;
-    const iiwa14_real_t t608 = t140 + t133;
+    const iiwa14_real_t t608 = t140 + t133; /* link j6: motion */
+    /* link j5: derivatives */
     const iiwa14_real_t t609 = t439 * t64 + t445 * t51 - t451 * t608 - (t236 * t606 + t245 * t607);
     const iiwa14_real_t t610 = t141 + (t609 - t291 * t102);
-    const iiwa14_real_t t611 = t440 * t51;
+    const iiwa14_real_t t611 = t440 * t51; /* link j6: derivatives */
+    /* link j5: derivatives */
     const iiwa14_real_t t612 = t239 * t607 - t249 * t606 + (t611 + t445 * t64 - t453 * t608);
-    const iiwa14_real_t t613 = t291 * t120;
-    const iiwa14_real_t t614 = t135 + (t613 + t612);
+    const iiwa14_real_t t613 = t291 * t120; /* link j6: derivatives */
+    const iiwa14_real_t t614 = t135 + (t613 + t612); /* link j5: derivatives */
     const iiwa14_real_t t615 = t148 - (t266 * t607 + (t291 * t51 - t253 * t608));
     const iiwa14_real_t t616 = t146 + (t266 * t606 + (t257 * t608 - t291 * t64));
     const iiwa14_real_t t617 = t11 * t616 - t14 * t615;
@@ -890,11 +1007,13 @@ int iiwa14_inverse_dynamics_derivatives(
     input_by_q[25] = IIWA14_C(-0.0625) * t624;
     const iiwa14_real_t t630 = IIWA14_C(0.125) * (t620 + (t619 + (t16 * t376 + t15 * t377)));
     input_by_q[32] = t630;
+    /* link j6: derivatives */
     const iiwa14_real_t t631 = t16 * t394 + t15 * t395 + (t444 * t64 + t611 + t452 * t608);
     input_by_q[39] = IIWA14_C(0.125) * (t631 + t613);
+    /* link j7: derivatives */
     const iiwa14_real_t t632 = t16 * t414 + t15 * t415 + (t493 * t64 + t442 * t51 + t495 * t608);
     input_by_q[46] = IIWA14_C(0.125) * (t632 + (t419 * t120 + t254 * t102));
-    const iiwa14_real_t t633 = IIWA14_C(2.0) * t285 + (t445 * t607 - t439 * t606);
+    const iiwa14_real_t t633 = IIWA14_C(2.0) * t285 + (t445 * t607 - t439 * t606); /* link j5: derivatives */
     const iiwa14_real_t t634 = IIWA14_C(-2.0) * t286 + (t440 * t607 - t445 * t606);
     const iiwa14_real_t t635 = IIWA14_C(-2.0) * t289 + t291 * t607;
     const iiwa14_real_t t636 = IIWA14_C(2.0) * t287 + t291 * t606;
@@ -927,15 +1046,16 @@ int iiwa14_inverse_dynamics_derivatives(
     input_by_ddq[39] = t650;
     const iiwa14_real_t t651 = IIWA14_C(-0.125) * t495;
     input_by_ddq[46] = t651;
-    const iiwa14_real_t t652 = t128 + t118;
-    const iiwa14_real_t t653 = IIWA14_C(2.0) * t58;
+    const iiwa14_real_t t652 = t128 + t118; /* link j7: motion */
+    const iiwa14_real_t t653 = IIWA14_C(2.0) * t58; /* link j6: derivatives */
     const iiwa14_real_t t654 = IIWA14_C(-2.0) * t68;
     const iiwa14_real_t t655 = t219 * t653 + t231 * t654 + (t436 * t57 - t434 * t81 + t441 * t652);
     const iiwa14_real_t t656 = t129 - (t655 + t252 * t123);
-    const iiwa14_real_t t657 = parameters[ZZ7] * t57;
+    const iiwa14_real_t t657 = parameters[ZZ7] * t57; /* link j7: derivatives */
+    /* link j6: derivatives */
     const iiwa14_real_t t658 = t222 * t654 - t227 * t653 + (t443 * t652 - (t657 + t436 * t81));
-    const iiwa14_real_t t659 = t252 * t108;
-    const iiwa14_real_t t660 = t659 + t658 - t121;
+    const iiwa14_real_t t659 = t252 * t108; /* link j7: derivatives */
+    const iiwa14_real_t t660 = t659 + t658 - t121; /* link j6: derivatives */
     const iiwa14_real_t t661 = t56 * t656 + t39 * t660;
     const iiwa14_real_t t662 = t443 * t57 - t441 * t81 - t440 * t652;
     const iiwa14_real_t t663 = t255 * t123 + parameters[MY6R] * t108;
@@ -961,9 +1081,10 @@ int iiwa14_inverse_dynamics_derivatives(
     input_by_q[33] = IIWA14_C(0.125) * t671;
     const iiwa14_real_t t679 = IIWA14_C(0.125) * (t663 + (t662 - (t58 * t392 + t68 * t393)));
     input_by_q[40] = t679;
+    /* link j7: derivatives */
     const iiwa14_real_t t680 = t58 * t412 + t68 * t413 + (t435 * t81 + t657 + t442 * t652);
     input_by_q[47] = IIWA14_C(0.125) * (t659 - t680);
-    const iiwa14_real_t t681 = IIWA14_C(2.0) * t242 - (t434 * t653 + t436 * t654);
+    const iiwa14_real_t t681 = IIWA14_C(2.0) * t242 - (t434 * t653 + t436 * t654); /* link j6: derivatives */
     const iiwa14_real_t t682 = IIWA14_C(2.0) * t243 + (parameters[ZZ7] * t654 - t436 * t653);
     const iiwa14_real_t t683 = t39 * t682 - t56 * t681;
     const iiwa14_real_t t684 = t441 * t653 + t443 * t654 - t395;
@@ -999,8 +1120,8 @@ int iiwa14_inverse_dynamics_derivatives(
     input_by_ddq[40] = IIWA14_C(3.2e3) * parameters[IA6] + IIWA14_C(0.125) * t440;
     const iiwa14_real_t t701 = IIWA14_C(0.125) * t442;
     input_by_ddq[47] = t701;
-    const iiwa14_real_t t702 = t113 + t88;
-    const iiwa14_real_t t703 = IIWA14_C(2.0) * t73;
+    const iiwa14_real_t t702 = t113 + t88; /* link j7: force and moment */
+    const iiwa14_real_t t703 = IIWA14_C(2.0) * t73; /* link j7: derivatives */
     const iiwa14_real_t t704 = IIWA14_C(2.0) * t78;
     const iiwa14_real_t t705 = t208 * t703 + t214 * t704 + (parameters[XX7R] * t77 + parameters[XY7] * t72
         - parameters[XZ7R] * t702);

@@ -7,16 +7,16 @@
  * Arm iiwa14, description 4f01a5afe35e97fd.
  * SPDX-License-Identifier: 0BSD
  *
- * Operations: 3169 (1787 mul, 1382 add, 0 neg), 12 trig, 7 other.
+ * Operations: 3169 (1787 mul, 1382 add, 0 neg), 12 trig, 7 other calls (sign, select and the like).
  *
- * @param[in]   q             [7]   [rad]                joint coordinates; norm at most 10000
- * @param[in]   dq            [7]   [rad/s]              joint velocities; norm at most 100000
- * @param[in]   ddq           [7]   [rad/s^2]            joint accelerations; norm at most 1e+08
- * @param[in]   parameters    [91]                       standard parameters; norm at most 1e+09
- * @param[out]  input         [7]   [A]                  inputs: motor currents, efforts where undriven
- * @param[out]  input_by_q    [49]  [(A) per (rad)]      d input / d q; 7 x 7, row-major
- * @param[out]  input_by_dq   [49]  [(A) per (rad/s)]    d input / d dq; 7 x 7, row-major
- * @param[out]  input_by_ddq  [49]  [(A) per (rad/s^2)]  d input / d ddq; 7 x 7, row-major
+ * @param[in]   q             [7]   [rad]              joint coordinates; norm at most 10000
+ * @param[in]   dq            [7]   [rad/s]            joint velocities; norm at most 100000
+ * @param[in]   ddq           [7]   [rad/s^2]          joint accelerations; norm at most 1e+08
+ * @param[in]   parameters    [91]                     standard parameters; norm at most 1e+09
+ * @param[out]  input         [7]   [A]                inputs: motor currents, efforts where undriven
+ * @param[out]  input_by_q    [49]  [A per rad]        d input / d q; 7 x 7, row-major
+ * @param[out]  input_by_dq   [49]  [A per (rad/s)]    d input / d dq; 7 x 7, row-major
+ * @param[out]  input_by_ddq  [49]  [A per (rad/s^2)]  d input / d ddq; 7 x 7, row-major
  *
  * Coordinates:
  *
@@ -124,11 +124,11 @@
  */
 #include "iiwa14_private.h"
 
-#if IIWA14_GENERATION != 0x27C72E36UL
+#if IIWA14_GENERATION != 0x1E31C9F2UL
 #error "iiwa14.h and iiwa14_inverse_dynamics_derivatives_standard.c are of different generations: generate the arm again"
 #endif
 
-int iiwa14_inverse_dynamics_derivatives_standard(
+iiwa14_status_t iiwa14_inverse_dynamics_derivatives_standard(
     const iiwa14_real_t q[IIWA14_N_JOINTS],
     const iiwa14_real_t dq[IIWA14_N_JOINTS],
     const iiwa14_real_t ddq[IIWA14_N_JOINTS],
@@ -143,7 +143,7 @@ int iiwa14_inverse_dynamics_derivatives_standard(
         XX5, XY5, XZ5, YY5, YZ5, ZZ5, MX5, MY5, MZ5, M5, XX6, XY6, XZ6, YY6, YZ6, ZZ6, MX6, MY6, MZ6, M6, XX7,
         XY7, XZ7, YY7, YZ7, ZZ7, MX7, MY7, MZ7, M7, FV1, FC1, IA1, FV2, FC2, IA2, FV3, FC3, IA3, FV4, FC4,
         IA4, FV5, FC5, IA5, FV6, FC6, IA6, FV7, FC7, IA7 };
-    int status = IIWA14_STATUS_OK;
+    iiwa14_status_t status = IIWA14_STATUS_OK;
 
     if (!iiwa14_within_joints(q, IIWA14_C(1.0e8))
         || !iiwa14_within_joints(dq, IIWA14_C(1.0e10))
@@ -171,66 +171,66 @@ int iiwa14_inverse_dynamics_derivatives_standard(
     IIWA14_SINCOS(q[5], &t39, &t56);
     iiwa14_real_t t71, t63;
     IIWA14_SINCOS(q[6], &t71, &t63);
-    const iiwa14_real_t t1 = t0 * dq[0];
-    const iiwa14_real_t t4 = t3 * dq[1] - t2 * t1;
+    const iiwa14_real_t t1 = t0 * dq[0]; /* link j2: motion */
+    const iiwa14_real_t t4 = t3 * dq[1] - t2 * t1; /* link j3: motion */
     const iiwa14_real_t t5 = t3 * t1 + t2 * dq[1];
     const iiwa14_real_t t6 = t4 * t5;
-    const iiwa14_real_t t8 = t7 * ddq[0];
+    const iiwa14_real_t t8 = t7 * ddq[0]; /* link j2: motion */
     const iiwa14_real_t t9 = dq[1] * t1;
     const iiwa14_real_t t10 = t9 - t8;
-    const iiwa14_real_t t11 = t10 - ddq[2];
-    const iiwa14_real_t t12 = t11 + t6;
-    const iiwa14_real_t t14 = t7 * dq[0];
+    const iiwa14_real_t t11 = t10 - ddq[2]; /* link j3: motion */
+    const iiwa14_real_t t12 = t11 + t6; /* link j4: motion */
+    const iiwa14_real_t t14 = t7 * dq[0]; /* link j2: motion */
     const iiwa14_real_t t15 = t1 * t14;
-    const iiwa14_real_t t16 = ddq[1] - t15;
-    const iiwa14_real_t t17 = t0 * ddq[0];
+    const iiwa14_real_t t16 = ddq[1] - t15; /* link j3: motion */
+    const iiwa14_real_t t17 = t0 * ddq[0]; /* link j2: motion */
     const iiwa14_real_t t18 = dq[1] * t14;
     const iiwa14_real_t t19 = t17 + t18;
-    const iiwa14_real_t t20 = t18 + t19;
+    const iiwa14_real_t t20 = t18 + t19; /* link j3: motion */
     const iiwa14_real_t t21 = t2 * t20 - t3 * t16;
     const iiwa14_real_t t22 = dq[2] + t14;
     const iiwa14_real_t t23 = t5 * t22;
     const iiwa14_real_t t24 = t21 - t23;
-    const iiwa14_real_t t25 = t24 - t23;
+    const iiwa14_real_t t25 = t24 - t23; /* link j4: motion */
     const iiwa14_real_t t27 = t26 * t25 - t13 * t12;
     const iiwa14_real_t t28 = t13 * t4 + t26 * t22;
     const iiwa14_real_t t29 = t5 - dq[3];
     const iiwa14_real_t t30 = t28 * t29;
     const iiwa14_real_t t31 = t27 + t30;
-    const iiwa14_real_t t32 = ddq[4] + t31;
+    const iiwa14_real_t t32 = ddq[4] + t31; /* link j5: motion */
     const iiwa14_real_t t35 = t33 * t28 + t34 * t29;
     const iiwa14_real_t t36 = t34 * t28 - t33 * t29;
     const iiwa14_real_t t37 = t35 * t36;
-    const iiwa14_real_t t38 = t32 + t37;
-    const iiwa14_real_t t40 = t2 * t16 + t3 * t20;
+    const iiwa14_real_t t38 = t32 + t37; /* link j6: motion */
+    const iiwa14_real_t t40 = t2 * t16 + t3 * t20; /* link j3: motion */
     const iiwa14_real_t t41 = t4 * t22;
     const iiwa14_real_t t42 = t40 - t41;
-    const iiwa14_real_t t43 = t42 - ddq[3];
+    const iiwa14_real_t t43 = t42 - ddq[3]; /* link j4: motion */
     const iiwa14_real_t t44 = t13 * t22 - t26 * t4;
     const iiwa14_real_t t45 = t28 * t44;
-    const iiwa14_real_t t46 = t43 + t45;
-    const iiwa14_real_t t47 = t26 * t12 + t13 * t25;
+    const iiwa14_real_t t46 = t43 + t45; /* link j5: motion */
+    const iiwa14_real_t t47 = t26 * t12 + t13 * t25; /* link j4: motion */
     const iiwa14_real_t t48 = t44 * t29;
     const iiwa14_real_t t49 = t47 + t48;
-    const iiwa14_real_t t50 = t48 + t49;
+    const iiwa14_real_t t50 = t48 + t49; /* link j5: motion */
     const iiwa14_real_t t51 = t33 * t50 - t34 * t46;
     const iiwa14_real_t t52 = dq[4] + t44;
     const iiwa14_real_t t53 = t36 * t52;
     const iiwa14_real_t t54 = t51 + t53;
-    const iiwa14_real_t t55 = t53 + t54;
+    const iiwa14_real_t t55 = t53 + t54; /* link j6: motion */
     const iiwa14_real_t t57 = t39 * t38 + t56 * t55;
     const iiwa14_real_t t58 = t39 * t35 + t56 * t52;
     const iiwa14_real_t t59 = t36 - dq[5];
     const iiwa14_real_t t60 = t58 * t59;
     const iiwa14_real_t t61 = t57 - t60;
-    const iiwa14_real_t t62 = t61 - t60;
-    const iiwa14_real_t t64 = t33 * t46 + t34 * t50;
+    const iiwa14_real_t t62 = t61 - t60; /* link j7: motion */
+    const iiwa14_real_t t64 = t33 * t46 + t34 * t50; /* link j5: motion */
     const iiwa14_real_t t65 = t35 * t52;
     const iiwa14_real_t t66 = t65 - t64;
-    const iiwa14_real_t t67 = t66 - ddq[5];
+    const iiwa14_real_t t67 = t66 - ddq[5]; /* link j6: motion */
     const iiwa14_real_t t68 = t56 * t35 - t39 * t52;
     const iiwa14_real_t t69 = t68 * t58;
-    const iiwa14_real_t t70 = t67 - t69;
+    const iiwa14_real_t t70 = t67 - t69; /* link j7: motion */
     const iiwa14_real_t t72 = t71 * t70 + t63 * t62;
     const iiwa14_real_t t73 = t71 * t68 + t63 * t59;
     const iiwa14_real_t t74 = dq[6] + t58;
@@ -240,55 +240,58 @@ int iiwa14_inverse_dynamics_derivatives_standard(
     const iiwa14_real_t t78 = t71 * t59 - t63 * t68;
     const iiwa14_real_t t79 = t78 * t74;
     const iiwa14_real_t t80 = t77 + t79;
-    const iiwa14_real_t t81 = t79 + t80;
+    const iiwa14_real_t t81 = t79 + t80; /* link j7: columns */
+    /* link j7: force and moment */
     const iiwa14_real_t t82 = t81 * parameters[XY7] - (t75 * (parameters[ZZ7] - parameters[YY7])
         + t76 * parameters[XX7]);
-    const iiwa14_real_t t83 = t56 * t38 - t39 * t55;
+    const iiwa14_real_t t83 = t56 * t38 - t39 * t55; /* link j6: motion */
     const iiwa14_real_t t84 = t68 * t59;
     const iiwa14_real_t t85 = t83 - t84;
-    const iiwa14_real_t t86 = ddq[6] + t85;
+    const iiwa14_real_t t86 = ddq[6] + t85; /* link j7: motion */
     const iiwa14_real_t t87 = t78 * t73;
-    const iiwa14_real_t t88 = t86 + t87;
-    const iiwa14_real_t t89 = t73 * t73;
+    const iiwa14_real_t t88 = t86 + t87; /* link j7: columns */
+    const iiwa14_real_t t89 = t73 * t73; /* link j7: motion */
     const iiwa14_real_t t90 = t74 * t74;
-    const iiwa14_real_t t91 = IIWA14_C(9.81) * t0;
-    const iiwa14_real_t t92 = IIWA14_C(0.42) * t16 - t91;
+    const iiwa14_real_t t91 = IIWA14_C(9.81) * t0; /* link j2: motion */
+    const iiwa14_real_t t92 = IIWA14_C(0.42) * t16 - t91; /* link j3: motion */
     const iiwa14_real_t t93 = IIWA14_C(0.42) * t20;
     const iiwa14_real_t t94 = t2 * t92 + t3 * t93;
-    const iiwa14_real_t t95 = t1 * t1;
+    const iiwa14_real_t t95 = t1 * t1; /* link j2: motion */
     const iiwa14_real_t t96 = dq[1] * dq[1];
     const iiwa14_real_t t97 = IIWA14_C(9.81) * t7;
-    const iiwa14_real_t t98 = t97 - IIWA14_C(0.42) * (t95 + t96);
-    const iiwa14_real_t t99 = t13 * t94 + t26 * t98;
-    const iiwa14_real_t t100 = t99 + IIWA14_C(0.4) * t46;
-    const iiwa14_real_t t101 = t3 * t92 - t2 * t93;
-    const iiwa14_real_t t102 = t101 + IIWA14_C(-0.4) * t50;
+    const iiwa14_real_t t98 = t97 - IIWA14_C(0.42) * (t95 + t96); /* link j3: motion */
+    const iiwa14_real_t t99 = t13 * t94 + t26 * t98; /* link j4: motion */
+    const iiwa14_real_t t100 = t99 + IIWA14_C(0.4) * t46; /* link j5: motion */
+    const iiwa14_real_t t101 = t3 * t92 - t2 * t93; /* link j3: motion */
+    const iiwa14_real_t t102 = t101 + IIWA14_C(-0.4) * t50; /* link j5: motion */
     const iiwa14_real_t t103 = t33 * t100 - t34 * t102;
-    const iiwa14_real_t t104 = t28 * t28;
+    const iiwa14_real_t t104 = t28 * t28; /* link j4: motion */
     const iiwa14_real_t t105 = t29 * t29;
-    const iiwa14_real_t t106 = t104 + t105;
-    const iiwa14_real_t t107 = t26 * t94 - t13 * t98;
-    const iiwa14_real_t t108 = IIWA14_C(-0.4) * t106 - t107;
-    const iiwa14_real_t t109 = t39 * t108 - t56 * t103;
-    const iiwa14_real_t t110 = t109 - IIWA14_C(-0.126) * t70;
-    const iiwa14_real_t t111 = t34 * t100 + t33 * t102;
-    const iiwa14_real_t t112 = t111 + IIWA14_C(-0.126) * t62;
+    const iiwa14_real_t t106 = t104 + t105; /* link j5: motion */
+    const iiwa14_real_t t107 = t26 * t94 - t13 * t98; /* link j4: motion */
+    const iiwa14_real_t t108 = IIWA14_C(-0.4) * t106 - t107; /* link j5: motion */
+    const iiwa14_real_t t109 = t39 * t108 - t56 * t103; /* link j6: motion */
+    const iiwa14_real_t t110 = t109 - IIWA14_C(-0.126) * t70; /* link j7: motion */
+    const iiwa14_real_t t111 = t34 * t100 + t33 * t102; /* link j5: motion */
+    const iiwa14_real_t t112 = t111 + IIWA14_C(-0.126) * t62; /* link j7: motion */
     const iiwa14_real_t t113 = t63 * t112 - t71 * t110;
-    const iiwa14_real_t t114 = t113 * parameters[MZ7];
-    const iiwa14_real_t t115 = t39 * t103 + t56 * t108;
+    const iiwa14_real_t t114 = t113 * parameters[MZ7]; /* link j7: force and moment */
+    const iiwa14_real_t t115 = t39 * t103 + t56 * t108; /* link j6: motion */
     const iiwa14_real_t t116 = t68 * t68;
     const iiwa14_real_t t117 = t59 * t59;
-    const iiwa14_real_t t118 = t116 + t117;
+    const iiwa14_real_t t118 = t116 + t117; /* link j7: motion */
     const iiwa14_real_t t119 = t115 + IIWA14_C(-0.126) * t118;
+    /* link j7: force and moment */
     const iiwa14_real_t t120 = (t89 - t90) * parameters[YZ7] + (t82 + t88 * parameters[XZ7])
         + (t119 * parameters[MY7] + t114);
-    const iiwa14_real_t t121 = t75 + t76;
+    const iiwa14_real_t t121 = t75 + t76; /* link j7: columns */
+    /* link j7: force and moment */
     const iiwa14_real_t t122 = t79 * (parameters[XX7] - parameters[ZZ7]) - t80 * parameters[YY7]
         + t121 * parameters[XY7];
-    const iiwa14_real_t t123 = t86 - t87;
-    const iiwa14_real_t t124 = t78 * t78;
+    const iiwa14_real_t t123 = t86 - t87; /* link j7: columns */
+    const iiwa14_real_t t124 = t78 * t78; /* link j7: motion */
     const iiwa14_real_t t125 = t63 * t110 + t71 * t112;
-    const iiwa14_real_t t126 = t125 * parameters[MZ7];
+    const iiwa14_real_t t126 = t125 * parameters[MZ7]; /* link j7: force and moment */
     const iiwa14_real_t t127 = (t124 - t90) * parameters[XZ7] + (t122 - t123 * parameters[YZ7]) + (t126
         + t119 * parameters[MX7]);
     const iiwa14_real_t t128 = t125 * parameters[M7];
@@ -297,168 +300,211 @@ int iiwa14_inverse_dynamics_derivatives_standard(
     const iiwa14_real_t t131 = t113 * parameters[M7];
     const iiwa14_real_t t132 = t72 * parameters[MZ7];
     const iiwa14_real_t t133 = t131 + ((t124 + t90) * parameters[MY7] - t88 * parameters[MX7] - t132);
-    const iiwa14_real_t t134 = t71 * t130 + t63 * t133;
-    const iiwa14_real_t t135 = t84 - t85;
+    const iiwa14_real_t t134 = t71 * t130 + t63 * t133; /* link j7: what it passes on */
+    const iiwa14_real_t t135 = t84 - t85; /* link j7: motion */
+    /* link j6: force and moment */
     const iiwa14_real_t t136 = t60 * (parameters[YY6] - parameters[ZZ6]) + t61 * parameters[XX6]
         - t135 * parameters[XY6];
-    const iiwa14_real_t t137 = t67 + t69;
-    const iiwa14_real_t t138 = t58 * t58;
+    const iiwa14_real_t t137 = t67 + t69; /* link j7: motion */
+    const iiwa14_real_t t138 = t58 * t58; /* link j6: motion */
+    /* link j6: force and moment */
     const iiwa14_real_t t139 = (t138 - t117) * parameters[YZ6] - (t136 + t137 * parameters[XZ6])
         + (t115 * parameters[MZ6] - t111 * parameters[MY6]);
+    /* link j7: what it passes on */
     const iiwa14_real_t t140 = t139 + (t63 * t120 + t71 * t127 + IIWA14_C(0.126) * t134);
-    const iiwa14_real_t t141 = parameters[XX7] - parameters[YY7];
+    const iiwa14_real_t t141 = parameters[XX7] - parameters[YY7]; /* link j7: inertia of it and all beyond */
+    /* link j7: force and moment */
     const iiwa14_real_t t142 = t86 * parameters[ZZ7] - t87 * t141 + t77 * parameters[YZ7]
         - t72 * parameters[XZ7];
     const iiwa14_real_t t143 = (t124 - t89) * parameters[XY7] + t142 + (t125 * parameters[MY7]
         - t113 * parameters[MX7]);
+    /* link j6: force and moment */
     const iiwa14_real_t t144 = t84 * (parameters[XX6] - parameters[ZZ6]) + t85 * parameters[YY6]
         + t62 * parameters[XY6];
     const iiwa14_real_t t145 = (t116 - t117) * parameters[XZ6] + (t144 + t70 * parameters[YZ6])
         + (t109 * parameters[MZ6] - t111 * parameters[MX6]);
-    const iiwa14_real_t t146 = t145 + t143;
-    const iiwa14_real_t t147 = t65 + t66;
+    const iiwa14_real_t t146 = t145 + t143; /* link j7: what it passes on */
+    const iiwa14_real_t t147 = t65 + t66; /* link j6: motion */
+    /* link j5: force and moment */
     const iiwa14_real_t t148 = t53 * (parameters[ZZ5] - parameters[YY5]) + t54 * parameters[XX5]
         + t147 * parameters[XY5];
-    const iiwa14_real_t t149 = t32 - t37;
-    const iiwa14_real_t t150 = t36 * t36;
+    const iiwa14_real_t t149 = t32 - t37; /* link j6: motion */
+    const iiwa14_real_t t150 = t36 * t36; /* link j5: motion */
     const iiwa14_real_t t151 = t52 * t52;
+    /* link j5: force and moment */
     const iiwa14_real_t t152 = (t150 - t151) * parameters[YZ5] + (t149 * parameters[XZ5] - t148)
         + (t108 * parameters[MY5] + t111 * parameters[MZ5]);
-    const iiwa14_real_t t153 = t152 + (t56 * t140 + t39 * t146);
-    const iiwa14_real_t t154 = t71 * t133 - t63 * t130;
+    const iiwa14_real_t t153 = t152 + (t56 * t140 + t39 * t146); /* link j6: what it passes on */
+    const iiwa14_real_t t154 = t71 * t133 - t63 * t130; /* link j7: what it passes on */
+    /* link j6: force and moment */
     const iiwa14_real_t t155 = t69 * (parameters[YY6] - parameters[XX6]) + t67 * parameters[ZZ6]
         + t83 * parameters[YZ6];
     const iiwa14_real_t t156 = (t138 - t116) * parameters[XY6] + (t155 + t57 * parameters[XZ6])
         + (t115 * parameters[MX6] - t109 * parameters[MY6]);
+    /* link j7: what it passes on */
     const iiwa14_real_t t157 = t156 + (t63 * t127 - t71 * t120 + IIWA14_C(-0.126) * t154);
+    /* link j5: force and moment */
     const iiwa14_real_t t158 = t66 * parameters[YY5] - t65 * (parameters[XX5] - parameters[ZZ5])
         + t55 * parameters[XY5];
-    const iiwa14_real_t t159 = t35 * t35;
+    const iiwa14_real_t t159 = t35 * t35; /* link j5: motion */
+    /* link j5: force and moment */
     const iiwa14_real_t t160 = (t159 - t151) * parameters[XZ5] + (t158 - t38 * parameters[YZ5])
         + (t108 * parameters[MX5] - t103 * parameters[MZ5]);
-    const iiwa14_real_t t161 = t160 + t157;
+    const iiwa14_real_t t161 = t160 + t157; /* link j6: what it passes on */
+    /* link j6: force and moment */
     const iiwa14_real_t t162 = t70 * parameters[MY6] - (t138 + t117) * parameters[MX6]
         - t83 * parameters[MZ6];
-    const iiwa14_real_t t163 = t162 - t109 * parameters[M6] + t154;
+    const iiwa14_real_t t163 = t162 - t109 * parameters[M6] + t154; /* link j7: what it passes on */
+    /* link j6: force and moment */
     const iiwa14_real_t t164 = t115 * parameters[M6] + (t118 * parameters[MY6] + t137 * parameters[MX6]
         - t57 * parameters[MZ6]);
-    const iiwa14_real_t t165 = t124 + t89;
+    const iiwa14_real_t t165 = t124 + t89; /* link j7: columns */
+    /* link j7: force and moment */
     const iiwa14_real_t t166 = t165 * parameters[MZ7] + (t81 * parameters[MX7] + t121 * parameters[MY7])
         - t119 * parameters[M7];
-    const iiwa14_real_t t167 = t166 - t164;
+    const iiwa14_real_t t167 = t166 - t164; /* link j7: what it passes on */
+    /* link j5: force and moment */
     const iiwa14_real_t t168 = (t150 + t151) * parameters[MX5] + t38 * parameters[MY5]
         - t64 * parameters[MZ5];
+    /* link j6: what it passes on */
     const iiwa14_real_t t169 = t168 - t103 * parameters[M5] + (t39 * t167 - t56 * t163);
-    const iiwa14_real_t t170 = t116 + t138;
+    const iiwa14_real_t t170 = t116 + t138; /* link j7: motion */
+    /* link j6: force and moment */
     const iiwa14_real_t t171 = t111 * parameters[M6] + (t170 * parameters[MZ6] + (t135 * parameters[MX6]
         + t62 * parameters[MY6]));
+    /* link j5: force and moment */
     const iiwa14_real_t t172 = (t159 + t151) * parameters[MY5] - t149 * parameters[MX5]
         - t51 * parameters[MZ5];
-    const iiwa14_real_t t173 = t111 * parameters[M5] + t172 + (t171 + t134);
-    const iiwa14_real_t t174 = t34 * t169 + t33 * t173;
-    const iiwa14_real_t t175 = t30 + t31;
+    const iiwa14_real_t t173 = t111 * parameters[M5] + t172 + (t171 + t134); /* link j6: what it passes on */
+    const iiwa14_real_t t174 = t34 * t169 + t33 * t173; /* link j5: what it passes on */
+    const iiwa14_real_t t175 = t30 + t31; /* link j5: motion */
+    /* link j4: force and moment */
     const iiwa14_real_t t176 = t175 * parameters[XY4] - (t48 * (parameters[ZZ4] - parameters[YY4])
         + t49 * parameters[XX4]);
-    const iiwa14_real_t t177 = t45 - t43;
-    const iiwa14_real_t t178 = t44 * t44;
+    const iiwa14_real_t t177 = t45 - t43; /* link j5: motion */
+    const iiwa14_real_t t178 = t44 * t44; /* link j4: motion */
+    /* link j4: force and moment */
     const iiwa14_real_t t179 = (t178 - t105) * parameters[YZ4] + (t176 + t177 * parameters[XZ4])
         + (t101 * parameters[MY4] + t107 * parameters[MZ4]);
+    /* link j5: what it passes on */
     const iiwa14_real_t t180 = t179 + (t33 * t153 + t34 * t161 + IIWA14_C(0.4) * t174);
+    /* link j5: force and moment */
     const iiwa14_real_t t181 = t37 * (parameters[YY5] - parameters[XX5]) - t32 * parameters[ZZ5]
         - t64 * parameters[YZ5];
     const iiwa14_real_t t182 = (t150 - t159) * parameters[XY5] + (t181 + t51 * parameters[XZ5])
         + (t111 * parameters[MX5] + t103 * parameters[MY5]);
-    const iiwa14_real_t t183 = t182 + (t39 * t140 - t56 * t146);
+    const iiwa14_real_t t183 = t182 + (t39 * t140 - t56 * t146); /* link j6: what it passes on */
+    /* link j4: force and moment */
     const iiwa14_real_t t184 = t30 * (parameters[XX4] - parameters[ZZ4]) - t31 * parameters[YY4]
         + t50 * parameters[XY4];
     const iiwa14_real_t t185 = (t104 - t105) * parameters[XZ4] + (t184 + t46 * parameters[YZ4])
         + (t101 * parameters[MX4] - t99 * parameters[MZ4]);
-    const iiwa14_real_t t186 = t185 + t183;
+    const iiwa14_real_t t186 = t185 + t183; /* link j5: what it passes on */
+    /* link j3: force and moment */
     const iiwa14_real_t t187 = t23 * (parameters[ZZ3] - parameters[YY3]) - t24 * parameters[XX3] + (t42
         - t41) * parameters[XY3];
-    const iiwa14_real_t t188 = t6 - t11;
-    const iiwa14_real_t t189 = t5 * t5;
+    const iiwa14_real_t t188 = t6 - t11; /* link j4: motion */
+    const iiwa14_real_t t189 = t5 * t5; /* link j3: motion */
     const iiwa14_real_t t190 = t22 * t22;
+    /* link j3: force and moment */
     const iiwa14_real_t t191 = (t189 - t190) * parameters[YZ3] + (t187 + t188 * parameters[XZ3])
         + (t98 * parameters[MY3] + t101 * parameters[MZ3]);
-    const iiwa14_real_t t192 = t191 + (t13 * t180 + t26 * t186);
-    const iiwa14_real_t t193 = t33 * t169 - t34 * t173;
+    const iiwa14_real_t t192 = t191 + (t13 * t180 + t26 * t186); /* link j4: what it passes on */
+    const iiwa14_real_t t193 = t33 * t169 - t34 * t173; /* link j5: what it passes on */
+    /* link j4: force and moment */
     const iiwa14_real_t t194 = t43 * parameters[ZZ4] - t45 * (parameters[YY4] - parameters[XX4])
         - t27 * parameters[YZ4];
     const iiwa14_real_t t195 = (t178 - t104) * parameters[XY4] + (t194 + t47 * parameters[XZ4])
         + (t107 * parameters[MX4] + t99 * parameters[MY4]);
+    /* link j5: what it passes on */
     const iiwa14_real_t t196 = t195 + (t34 * t153 - t33 * t161 + IIWA14_C(-0.4) * t193);
+    /* link j3: force and moment */
     const iiwa14_real_t t197 = t42 * parameters[YY3] - t41 * (parameters[ZZ3] - parameters[XX3])
         - t25 * parameters[XY3];
-    const iiwa14_real_t t198 = t4 * t4;
+    const iiwa14_real_t t198 = t4 * t4; /* link j3: motion */
+    /* link j3: force and moment */
     const iiwa14_real_t t199 = (t190 - t198) * parameters[XZ3] + (t197 - t12 * parameters[YZ3])
         + (t94 * parameters[MZ3] - t98 * parameters[MX3]);
-    const iiwa14_real_t t200 = t199 + t196;
+    const iiwa14_real_t t200 = t199 + t196; /* link j4: what it passes on */
+    /* link j4: force and moment */
     const iiwa14_real_t t201 = (t178 + t105) * parameters[MX4] - t46 * parameters[MY4]
         - t27 * parameters[MZ4];
-    const iiwa14_real_t t202 = t201 - t99 * parameters[M4] + t193;
-    const iiwa14_real_t t203 = t159 + t150;
+    const iiwa14_real_t t202 = t201 - t99 * parameters[M4] + t193; /* link j5: what it passes on */
+    const iiwa14_real_t t203 = t159 + t150; /* link j6: motion */
+    /* link j5: force and moment */
     const iiwa14_real_t t204 = t203 * parameters[MZ5] + (t55 * parameters[MY5] - t147 * parameters[MX5])
         - t108 * parameters[M5];
+    /* link j4: force and moment */
     const iiwa14_real_t t205 = t107 * parameters[M4] + (t106 * parameters[MY4] - t177 * parameters[MX4]
         - t47 * parameters[MZ4]);
-    const iiwa14_real_t t206 = t205 + (t204 + (t39 * t163 + t56 * t167));
+    const iiwa14_real_t t206 = t205 + (t204 + (t39 * t163 + t56 * t167)); /* link j5: what it passes on */
+    /* link j3: force and moment */
     const iiwa14_real_t t207 = t12 * parameters[MY3] - (t189 + t190) * parameters[MX3]
         + t40 * parameters[MZ3];
+    /* link j4: what it passes on */
     const iiwa14_real_t t208 = t94 * parameters[M3] + t207 + (t26 * t206 - t13 * t202);
-    const iiwa14_real_t t209 = t104 + t178;
+    const iiwa14_real_t t209 = t104 + t178; /* link j5: motion */
+    /* link j4: force and moment */
     const iiwa14_real_t t210 = t101 * parameters[M4] - (t209 * parameters[MZ4] + (t175 * parameters[MX4]
         + t50 * parameters[MY4]));
+    /* link j3: force and moment */
     const iiwa14_real_t t211 = (t198 + t190) * parameters[MY3] - t188 * parameters[MX3]
         - t21 * parameters[MZ3];
-    const iiwa14_real_t t212 = t101 * parameters[M3] + t211 + (t210 + t174);
+    const iiwa14_real_t t212 = t101 * parameters[M3] + t211 + (t210 + t174); /* link j4: what it passes on */
+    /* link j3: what it passes on */
     const iiwa14_real_t t213 = t3 * t200 - t2 * t192 + IIWA14_C(0.42) * (t3 * t208 - t2 * t212);
+    /* link j2: force and moment */
     const iiwa14_real_t t214 = t18 * (parameters[ZZ2] - parameters[YY2]) + t19 * parameters[XX2] - (t9
         + t10) * parameters[XY2];
-    const iiwa14_real_t t215 = t14 * t14;
+    const iiwa14_real_t t215 = t14 * t14; /* link j2: motion */
+    /* link j2: force and moment */
     const iiwa14_real_t t216 = (t96 - t215) * parameters[YZ2] + (t214 - (ddq[1] + t15) * parameters[XZ2]);
-    const iiwa14_real_t t217 = t216 - t97 * parameters[MZ2] + t213;
+    const iiwa14_real_t t217 = t216 - t97 * parameters[MZ2] + t213; /* link j3: what it passes on */
+    /* link j3: force and moment */
     const iiwa14_real_t t218 = t11 * parameters[ZZ3] - t6 * (parameters[YY3] - parameters[XX3])
         - t40 * parameters[YZ3];
     const iiwa14_real_t t219 = (t189 - t198) * parameters[XY3] + (t218 + t21 * parameters[XZ3])
         + (t101 * parameters[MX3] + t94 * parameters[MY3]);
-    const iiwa14_real_t t220 = t219 + (t13 * t186 - t26 * t180);
+    const iiwa14_real_t t220 = t219 + (t13 * t186 - t26 * t180); /* link j4: what it passes on */
+    /* link j2: force and moment */
     const iiwa14_real_t t221 = t9 * (parameters[ZZ2] - parameters[XX2]) + t10 * parameters[YY2]
         - t20 * parameters[XY2];
     const iiwa14_real_t t222 = (t96 - t95) * parameters[XZ2] + (t221 + t16 * parameters[YZ2])
         - t91 * parameters[MZ2];
-    const iiwa14_real_t t223 = t222 + t220;
+    const iiwa14_real_t t223 = t222 + t220; /* link j3: what it passes on */
     const iiwa14_real_t t224 = IIWA14_C(0.0625) * (ddq[0] * parameters[ZZ1] + (t0 * t217 - t7 * t223));
-    const iiwa14_real_t t225 = iiwa14_sign(dq[0]);
+    const iiwa14_real_t t225 = iiwa14_sign(dq[0]); /* joint j1: coulomb_friction */
     const iiwa14_real_t t226 = IIWA14_C(160.0) * dq[0] * parameters[FV1] + t225 * parameters[FC1]
         + IIWA14_C(160.0) * ddq[0] * parameters[IA1];
     input[0] = IIWA14_C(10.0) * t226 + t224;
+    /* link j3: what it passes on */
     const iiwa14_real_t t227 = t3 * t192 + t2 * t200 + IIWA14_C(0.42) * (t2 * t208 + t3 * t212);
+    /* link j2: force and moment */
     const iiwa14_real_t t228 = t15 * (parameters[YY2] - parameters[XX2]) + ddq[1] * parameters[ZZ2]
         - t8 * parameters[YZ2];
     const iiwa14_real_t t229 = t91 * parameters[MY2] - t97 * parameters[MX2] + ((t95 - t215) * parameters[XY2]
         + (t228 - t17 * parameters[XZ2]));
-    const iiwa14_real_t t230 = iiwa14_sign(dq[1]);
+    const iiwa14_real_t t230 = iiwa14_sign(dq[1]); /* joint j2: coulomb_friction */
     const iiwa14_real_t t231 = IIWA14_C(160.0) * dq[1] * parameters[FV2] + t230 * parameters[FC2]
         + IIWA14_C(160.0) * ddq[1] * parameters[IA2];
     input[1] = IIWA14_C(10.0) * t231 + IIWA14_C(0.0625) * (t229 + t227);
-    const iiwa14_real_t t232 = iiwa14_sign(dq[2]);
+    const iiwa14_real_t t232 = iiwa14_sign(dq[2]); /* joint j3: coulomb_friction */
     const iiwa14_real_t t233 = IIWA14_C(160.0) * dq[2] * parameters[FV3] + t232 * parameters[FC3]
         + IIWA14_C(160.0) * ddq[2] * parameters[IA3];
     input[2] = IIWA14_C(10.0) * t233 + IIWA14_C(-0.0625) * t220;
-    const iiwa14_real_t t234 = iiwa14_sign(dq[3]);
+    const iiwa14_real_t t234 = iiwa14_sign(dq[3]); /* joint j4: coulomb_friction */
     const iiwa14_real_t t235 = IIWA14_C(160.0) * dq[3] * parameters[FV4] + t234 * parameters[FC4]
         + IIWA14_C(160.0) * ddq[3] * parameters[IA4];
     input[3] = IIWA14_C(10.0) * t235 + IIWA14_C(-0.0625) * t196;
-    const iiwa14_real_t t236 = iiwa14_sign(dq[4]);
+    const iiwa14_real_t t236 = iiwa14_sign(dq[4]); /* joint j5: coulomb_friction */
     const iiwa14_real_t t237 = IIWA14_C(1.0e2) * dq[4] * parameters[FV5] + t236 * parameters[FC5]
         + IIWA14_C(1.0e2) * ddq[4] * parameters[IA5];
     input[4] = IIWA14_C(12.5) * t237 + IIWA14_C(-0.125) * t183;
-    const iiwa14_real_t t238 = iiwa14_sign(dq[5]);
+    const iiwa14_real_t t238 = iiwa14_sign(dq[5]); /* joint j6: coulomb_friction */
     const iiwa14_real_t t239 = IIWA14_C(160.0) * dq[5] * parameters[FV6] + t238 * parameters[FC6]
         + IIWA14_C(160.0) * ddq[5] * parameters[IA6];
     input[5] = IIWA14_C(20.0) * t239 + IIWA14_C(-0.125) * t157;
-    const iiwa14_real_t t240 = iiwa14_sign(dq[6]);
+    const iiwa14_real_t t240 = iiwa14_sign(dq[6]); /* joint j7: coulomb_friction */
     const iiwa14_real_t t241 = IIWA14_C(160.0) * dq[6] * parameters[FV7] + t240 * parameters[FC7]
         + IIWA14_C(160.0) * ddq[6] * parameters[IA7];
     input[6] = IIWA14_C(20.0) * t241 + IIWA14_C(0.125) * t143;
@@ -472,16 +518,19 @@ int iiwa14_inverse_dynamics_derivatives_standard(
     const iiwa14_real_t t249 = t78 * parameters[XZ7] + t74 * t248;
     const iiwa14_real_t t250 = t247 - parameters[YY7];
     const iiwa14_real_t t251 = t74 * t250 - t73 * parameters[YZ7];
+    /* link j7: inertia, momentum beyond */
     const iiwa14_real_t t252 = t63 * (t244 + t246) + t71 * (t249 + t251);
     const iiwa14_real_t t253 = t63 * t252;
-    const iiwa14_real_t t254 = IIWA14_C(-0.126) * t59;
+    const iiwa14_real_t t254 = IIWA14_C(-0.126) * t59; /* link j7: velocity of its origin */
+    /* link j7: column of the mass matrix */
     const iiwa14_real_t t255 = t63 * parameters[MX7] - t71 * parameters[MY7];
-    const iiwa14_real_t t256 = t255 * t254;
+    const iiwa14_real_t t256 = t255 * t254; /* link j7: inertia, momentum beyond */
     const iiwa14_real_t t257 = t73 * parameters[MX7] - t78 * parameters[MY7];
     const iiwa14_real_t t258 = IIWA14_C(-0.126) * t257;
-    const iiwa14_real_t t259 = IIWA14_C(-0.126) * t68;
+    const iiwa14_real_t t259 = IIWA14_C(-0.126) * t68; /* link j7: velocity of its origin */
+    /* link j7: column of the mass matrix */
     const iiwa14_real_t t260 = t63 * parameters[MY7] + t71 * parameters[MX7];
-    const iiwa14_real_t t261 = t260 * t259;
+    const iiwa14_real_t t261 = t260 * t259; /* link j7: inertia, momentum beyond */
     const iiwa14_real_t t262 = t256 + t261 - t258;
     const iiwa14_real_t t263 = t58 * parameters[XZ6];
     const iiwa14_real_t t264 = t59 * parameters[XY6];
@@ -495,8 +544,9 @@ int iiwa14_inverse_dynamics_derivatives_standard(
     const iiwa14_real_t t272 = t73 * parameters[MZ7] + t74 * parameters[MY7];
     const iiwa14_real_t t273 = t74 * parameters[MX7] + t78 * parameters[MZ7];
     const iiwa14_real_t t274 = t63 * t272 + t71 * t273;
-    const iiwa14_real_t t275 = IIWA14_C(0.126) * parameters[M7];
+    const iiwa14_real_t t275 = IIWA14_C(0.126) * parameters[M7]; /* link j7: inertia of it and all beyond */
     const iiwa14_real_t t276 = parameters[MZ7] + t275;
+    /* link j7: inertia, momentum beyond */
     const iiwa14_real_t t277 = t63 * t270 + t71 * t271 + (IIWA14_C(-0.126) * t274 + t276 * t254);
     const iiwa14_real_t t278 = IIWA14_C(0.5) * (parameters[ZZ6] + (parameters[XX6] + parameters[YY6]));
     const iiwa14_real_t t279 = parameters[YY6] - t278;
@@ -505,295 +555,343 @@ int iiwa14_inverse_dynamics_derivatives_standard(
     const iiwa14_real_t t282 = t73 * parameters[XY7] + t78 * t250;
     const iiwa14_real_t t283 = t278 - parameters[XX6];
     const iiwa14_real_t t284 = t68 * parameters[XZ6] - t59 * t283 + (t63 * t281 - t71 * t282);
+    /* link j6: inertia, momentum beyond */
     const iiwa14_real_t t285 = t56 * (t268 - t265) + t39 * (t280 - t284);
     const iiwa14_real_t t286 = t56 * t285;
     const iiwa14_real_t t287 = t36 * parameters[XZ5];
     const iiwa14_real_t t288 = t52 * parameters[XY5];
     const iiwa14_real_t t289 = t268 - t286 - (t287 + t288);
+    /* link j7: inertia, momentum beyond */
     const iiwa14_real_t t290 = t263 + t267 + (t262 + (t253 - t244 - t261));
     const iiwa14_real_t t291 = t35 * parameters[YZ5];
-    const iiwa14_real_t t292 = t288 - t291 + t290;
-    const iiwa14_real_t t293 = t71 * t252;
+    const iiwa14_real_t t292 = t288 - t291 + t290; /* link j6: inertia, momentum beyond */
+    const iiwa14_real_t t293 = t71 * t252; /* link j7: inertia, momentum beyond */
     const iiwa14_real_t t294 = t278 - parameters[ZZ6];
     const iiwa14_real_t t295 = t293 - t251 + t260 * t254 - (t59 * parameters[YZ6] + t58 * t294);
     const iiwa14_real_t t296 = t59 * parameters[XZ6] - t68 * t294 + (t71 * t281 + t63 * t282);
     const iiwa14_real_t t297 = IIWA14_C(0.5) * (parameters[ZZ5] + (parameters[XX5] + parameters[YY5]));
     const iiwa14_real_t t298 = parameters[YY5] - t297;
+    /* link j6: inertia, momentum beyond */
     const iiwa14_real_t t299 = t36 * parameters[YZ5] + t52 * t298 + (t56 * t295 - t39 * t296);
+    /* link j7: inertia, momentum beyond */
     const iiwa14_real_t t300 = t68 * parameters[XY6] - t58 * t283 + (t249 - t293 - t255 * t259);
     const iiwa14_real_t t301 = t71 * t272 - t63 * t273;
     const iiwa14_real_t t302 = t71 * t270 - t63 * t271 + (IIWA14_C(-0.126) * t301 + t276 * t259);
     const iiwa14_real_t t303 = t58 * parameters[XY6] + t68 * t279 + t302;
     const iiwa14_real_t t304 = t297 - parameters[XX5];
+    /* link j6: inertia, momentum beyond */
     const iiwa14_real_t t305 = t35 * parameters[XZ5] + t52 * t304 + (t39 * t303 - t56 * t300);
+    /* link j5: inertia, momentum beyond */
     const iiwa14_real_t t306 = t33 * (t289 - t292) + t34 * (t299 + t305);
     const iiwa14_real_t t307 = t33 * t306;
-    const iiwa14_real_t t308 = parameters[MZ6] + t260;
-    const iiwa14_real_t t309 = parameters[MY5] + t308;
-    const iiwa14_real_t t310 = parameters[MX6] + t255;
+    const iiwa14_real_t t308 = parameters[MZ6] + t260; /* link j7: inertia of it and all beyond */
+    const iiwa14_real_t t309 = parameters[MY5] + t308; /* link j6: inertia of it and all beyond */
+    const iiwa14_real_t t310 = parameters[MX6] + t255; /* link j7: inertia of it and all beyond */
     const iiwa14_real_t t311 = t276 - parameters[MY6];
-    const iiwa14_real_t t312 = t39 * t311 + t56 * t310;
-    const iiwa14_real_t t313 = parameters[MX5] + t312;
-    const iiwa14_real_t t314 = t34 * t309 - t33 * t313;
-    const iiwa14_real_t t315 = IIWA14_C(-0.4) * t29;
-    const iiwa14_real_t t316 = t314 * t315;
+    const iiwa14_real_t t312 = t39 * t311 + t56 * t310; /* link j6: column of the mass matrix */
+    const iiwa14_real_t t313 = parameters[MX5] + t312; /* link j6: inertia of it and all beyond */
+    const iiwa14_real_t t314 = t34 * t309 - t33 * t313; /* link j5: column of the mass matrix */
+    const iiwa14_real_t t315 = IIWA14_C(-0.4) * t29; /* link j5: velocity of its origin */
+    const iiwa14_real_t t316 = t314 * t315; /* link j5: inertia, momentum beyond */
+    /* link j7: inertia, momentum beyond */
     const iiwa14_real_t t317 = t59 * parameters[MY6] - t58 * parameters[MZ6] + (parameters[M7] * t254 - t274);
     const iiwa14_real_t t318 = t59 * parameters[MX6] + t68 * parameters[MZ6] + t257;
+    /* link j6: inertia, momentum beyond */
     const iiwa14_real_t t319 = t39 * t317 - t56 * t318 - (t35 * parameters[MY5] + t36 * parameters[MX5]);
-    const iiwa14_real_t t320 = IIWA14_C(0.4) * t319;
-    const iiwa14_real_t t321 = t33 * t309 + t34 * t313;
-    const iiwa14_real_t t322 = IIWA14_C(-0.4) * t28;
-    const iiwa14_real_t t323 = t321 * t322;
+    const iiwa14_real_t t320 = IIWA14_C(0.4) * t319; /* link j5: inertia, momentum beyond */
+    const iiwa14_real_t t321 = t33 * t309 + t34 * t313; /* link j5: column of the mass matrix */
+    const iiwa14_real_t t322 = IIWA14_C(-0.4) * t28; /* link j5: velocity of its origin */
+    const iiwa14_real_t t323 = t321 * t322; /* link j5: inertia, momentum beyond */
     const iiwa14_real_t t324 = t316 + t323 - t320;
     const iiwa14_real_t t325 = t44 * parameters[XZ4];
     const iiwa14_real_t t326 = t29 * parameters[XY4];
     const iiwa14_real_t t327 = t325 + t326 + (t324 + (t292 + t307 - t316));
-    const iiwa14_real_t t328 = t287 + t291 + (t265 + t286);
+    const iiwa14_real_t t328 = t287 + t291 + (t265 + t286); /* link j6: inertia, momentum beyond */
     const iiwa14_real_t t329 = t28 * parameters[YZ4];
-    const iiwa14_real_t t330 = t324 + (t328 + t320) - (t326 + t329);
-    const iiwa14_real_t t331 = t39 * t285;
+    const iiwa14_real_t t330 = t324 + (t328 + t320) - (t326 + t329); /* link j5: inertia, momentum beyond */
+    const iiwa14_real_t t331 = t39 * t285; /* link j6: inertia, momentum beyond */
     const iiwa14_real_t t332 = parameters[ZZ5] - t297;
     const iiwa14_real_t t333 = t331 - t280 - (t52 * parameters[YZ5] + t36 * t332);
     const iiwa14_real_t t334 = t35 * t332 - t52 * parameters[XZ5] + (t39 * t300 + t56 * t303);
     const iiwa14_real_t t335 = t56 * t317 + t39 * t318 - (t36 * parameters[MZ5] + t52 * parameters[MY5]);
+    /* link j7: inertia, momentum beyond */
     const iiwa14_real_t t336 = t301 - parameters[M7] * t259 - (t68 * parameters[MY6] + t58 * parameters[MX6]);
+    /* link j6: inertia, momentum beyond */
     const iiwa14_real_t t337 = t35 * parameters[MZ5] - t52 * parameters[MX5] + t336;
-    const iiwa14_real_t t338 = t33 * t335 + t34 * t337;
-    const iiwa14_real_t t339 = t56 * t311 - t39 * t310;
-    const iiwa14_real_t t340 = parameters[MZ5] + t339;
-    const iiwa14_real_t t341 = parameters[M6] + parameters[M7];
-    const iiwa14_real_t t342 = parameters[M5] + t341;
-    const iiwa14_real_t t343 = IIWA14_C(0.4) * t342;
+    const iiwa14_real_t t338 = t33 * t335 + t34 * t337; /* link j5: inertia, momentum beyond */
+    const iiwa14_real_t t339 = t56 * t311 - t39 * t310; /* link j6: column of the mass matrix */
+    const iiwa14_real_t t340 = parameters[MZ5] + t339; /* link j6: inertia of it and all beyond */
+    const iiwa14_real_t t341 = parameters[M6] + parameters[M7]; /* link j7: inertia of it and all beyond */
+    const iiwa14_real_t t342 = parameters[M5] + t341; /* link j6: inertia of it and all beyond */
+    const iiwa14_real_t t343 = IIWA14_C(0.4) * t342; /* link j5: inertia of it and all beyond */
     const iiwa14_real_t t344 = t340 + t343;
+    /* link j5: inertia, momentum beyond */
     const iiwa14_real_t t345 = t33 * t333 + t34 * t334 + (IIWA14_C(-0.4) * t338 + t344 * t315);
     const iiwa14_real_t t346 = IIWA14_C(0.5) * (parameters[ZZ4] + (parameters[XX4] + parameters[YY4]));
     const iiwa14_real_t t347 = t346 - parameters[YY4];
     const iiwa14_real_t t348 = t44 * parameters[YZ4] - t29 * t347 + t345;
+    /* link j6: inertia, momentum beyond */
     const iiwa14_real_t t349 = t35 * parameters[XY5] - t36 * t304 + (t284 + t331);
     const iiwa14_real_t t350 = t36 * parameters[XY5] + t35 * t298 + (t39 * t295 + t56 * t296);
     const iiwa14_real_t t351 = parameters[XX4] - t346;
+    /* link j5: inertia, momentum beyond */
     const iiwa14_real_t t352 = t33 * t349 - t34 * t350 - (t28 * parameters[XZ4] + t29 * t351);
+    /* link j4: inertia, momentum beyond */
     const iiwa14_real_t t353 = t13 * (t330 - t327) + t26 * (t348 + t352);
     const iiwa14_real_t t354 = t13 * t353;
     const iiwa14_real_t t355 = t5 * parameters[XZ3];
     const iiwa14_real_t t356 = t22 * parameters[XY3];
     const iiwa14_real_t t357 = t355 - t356 + (t330 - t354);
+    /* link j5: inertia, momentum beyond */
     const iiwa14_real_t t358 = t329 - t325 + (t324 + (t289 - t307 - t323));
     const iiwa14_real_t t359 = t4 * parameters[YZ3];
-    const iiwa14_real_t t360 = t356 - t359 + t358;
-    const iiwa14_real_t t361 = t34 * t306;
+    const iiwa14_real_t t360 = t356 - t359 + t358; /* link j4: inertia, momentum beyond */
+    const iiwa14_real_t t361 = t34 * t306; /* link j5: inertia, momentum beyond */
     const iiwa14_real_t t362 = parameters[ZZ4] - t346;
     const iiwa14_real_t t363 = t361 - t299 + t321 * t315 - (t29 * parameters[YZ4] + t44 * t362);
     const iiwa14_real_t t364 = t29 * parameters[XZ4] + t28 * t362 + (t34 * t349 + t33 * t350);
     const iiwa14_real_t t365 = IIWA14_C(0.5) * (parameters[ZZ3] + (parameters[XX3] + parameters[YY3]));
     const iiwa14_real_t t366 = t365 - parameters[YY3];
+    /* link j4: inertia, momentum beyond */
     const iiwa14_real_t t367 = t5 * parameters[YZ3] + t22 * t366 + (t13 * t363 - t26 * t364);
+    /* link j5: inertia, momentum beyond */
     const iiwa14_real_t t368 = t44 * t351 - t28 * parameters[XY4] + (t361 - t305 + t314 * t322);
     const iiwa14_real_t t369 = t33 * t337 - t34 * t335;
     const iiwa14_real_t t370 = t33 * t334 - t34 * t333 + (IIWA14_C(-0.4) * t369 + t344 * t322);
     const iiwa14_real_t t371 = t44 * parameters[XY4] + t28 * t347 - t370;
     const iiwa14_real_t t372 = parameters[XX3] - t365;
+    /* link j4: inertia, momentum beyond */
     const iiwa14_real_t t373 = t22 * t372 - t4 * parameters[XZ3] + (t13 * t368 - t26 * t371);
+    /* link j3: inertia, momentum beyond */
     const iiwa14_real_t t374 = t2 * (t360 - t357) + t3 * (t367 + t373);
     const iiwa14_real_t t375 = t2 * t374;
-    const iiwa14_real_t t376 = parameters[MZ4] - t321;
-    const iiwa14_real_t t377 = parameters[MY3] - t376;
-    const iiwa14_real_t t378 = t314 - parameters[MX4];
+    const iiwa14_real_t t376 = parameters[MZ4] - t321; /* link j5: inertia of it and all beyond */
+    const iiwa14_real_t t377 = parameters[MY3] - t376; /* link j4: inertia of it and all beyond */
+    const iiwa14_real_t t378 = t314 - parameters[MX4]; /* link j5: inertia of it and all beyond */
     const iiwa14_real_t t379 = parameters[MY4] + t344;
-    const iiwa14_real_t t380 = t26 * t379 + t13 * t378;
-    const iiwa14_real_t t381 = parameters[MX3] - t380;
-    const iiwa14_real_t t382 = t2 * t381 - t3 * t377;
-    const iiwa14_real_t t383 = IIWA14_C(0.42) * dq[1];
-    const iiwa14_real_t t384 = t382 * t383;
+    const iiwa14_real_t t380 = t26 * t379 + t13 * t378; /* link j4: column of the mass matrix */
+    const iiwa14_real_t t381 = parameters[MX3] - t380; /* link j4: inertia of it and all beyond */
+    const iiwa14_real_t t382 = t2 * t381 - t3 * t377; /* link j3: column of the mass matrix */
+    const iiwa14_real_t t383 = IIWA14_C(0.42) * dq[1]; /* link j3: velocity of its origin */
+    const iiwa14_real_t t384 = t382 * t383; /* link j3: inertia, momentum beyond */
+    /* link j5: inertia, momentum beyond */
     const iiwa14_real_t t385 = t44 * parameters[MZ4] + t29 * parameters[MY4] + (t338 - t342 * t315);
     const iiwa14_real_t t386 = t29 * parameters[MX4] + t28 * parameters[MZ4] + t319;
+    /* link j4: inertia, momentum beyond */
     const iiwa14_real_t t387 = t4 * parameters[MY3] - t5 * parameters[MX3] + (t26 * t385 - t13 * t386);
-    const iiwa14_real_t t388 = IIWA14_C(-0.42) * t387;
-    const iiwa14_real_t t389 = t2 * t377 + t3 * t381;
-    const iiwa14_real_t t390 = IIWA14_C(-0.42) * t1;
-    const iiwa14_real_t t391 = t389 * t390;
+    const iiwa14_real_t t388 = IIWA14_C(-0.42) * t387; /* link j3: inertia, momentum beyond */
+    const iiwa14_real_t t389 = t2 * t377 + t3 * t381; /* link j3: column of the mass matrix */
+    const iiwa14_real_t t390 = IIWA14_C(-0.42) * t1; /* link j3: velocity of its origin */
+    const iiwa14_real_t t391 = t389 * t390; /* link j3: inertia, momentum beyond */
     const iiwa14_real_t t392 = t384 - t391 - t388;
     const iiwa14_real_t t393 = t14 * parameters[XZ2];
     const iiwa14_real_t t394 = dq[1] * parameters[XY2];
     const iiwa14_real_t t395 = t392 + (t360 - t375 - t384) - (t393 + t394);
-    const iiwa14_real_t t396 = t359 - t355 + (t327 + t354);
+    const iiwa14_real_t t396 = t359 - t355 + (t327 + t354); /* link j4: inertia, momentum beyond */
     const iiwa14_real_t t397 = t1 * parameters[YZ2];
-    const iiwa14_real_t t398 = t394 + t397 + (t392 + (t396 + t388));
-    const iiwa14_real_t t399 = t26 * t353;
+    const iiwa14_real_t t398 = t394 + t397 + (t392 + (t396 + t388)); /* link j3: inertia, momentum beyond */
+    const iiwa14_real_t t399 = t26 * t353; /* link j4: inertia, momentum beyond */
     const iiwa14_real_t t400 = parameters[ZZ3] - t365;
     const iiwa14_real_t t401 = t22 * parameters[YZ3] - t5 * t400 + (t399 - t348);
     const iiwa14_real_t t402 = t22 * parameters[XZ3] - t4 * t400 + (t26 * t368 + t13 * t371);
     const iiwa14_real_t t403 = t5 * parameters[MZ3] - t22 * parameters[MY3] + (t13 * t385 + t26 * t386);
+    /* link j5: inertia, momentum beyond */
     const iiwa14_real_t t404 = t28 * parameters[MY4] - t44 * parameters[MX4] + (t369 - t342 * t322);
+    /* link j4: inertia, momentum beyond */
     const iiwa14_real_t t405 = t4 * parameters[MZ3] - t22 * parameters[MX3] + t404;
-    const iiwa14_real_t t406 = t26 * t378 - t13 * t379;
-    const iiwa14_real_t t407 = parameters[MZ3] - t406;
-    const iiwa14_real_t t408 = parameters[M4] + t342;
-    const iiwa14_real_t t409 = parameters[M3] + t408;
-    const iiwa14_real_t t410 = IIWA14_C(0.42) * t409;
+    const iiwa14_real_t t406 = t26 * t378 - t13 * t379; /* link j4: column of the mass matrix */
+    const iiwa14_real_t t407 = parameters[MZ3] - t406; /* link j4: inertia of it and all beyond */
+    const iiwa14_real_t t408 = parameters[M4] + t342; /* link j5: inertia of it and all beyond */
+    const iiwa14_real_t t409 = parameters[M3] + t408; /* link j4: inertia of it and all beyond */
+    const iiwa14_real_t t410 = IIWA14_C(0.42) * t409; /* link j3: inertia of it and all beyond */
     const iiwa14_real_t t411 = t407 + t410;
+    /* link j3: inertia, momentum beyond */
     const iiwa14_real_t t412 = IIWA14_C(0.42) * (t2 * t403 + t3 * t405) + t411 * t383;
     const iiwa14_real_t t413 = IIWA14_C(0.5) * (parameters[ZZ2] + (parameters[XX2] + parameters[YY2]));
     const iiwa14_real_t t414 = t413 - parameters[YY2];
     const iiwa14_real_t t415 = dq[1] * t414 - t14 * parameters[YZ2] + (t2 * t401 + t3 * t402 + t412);
+    /* link j4: inertia, momentum beyond */
     const iiwa14_real_t t416 = t4 * parameters[XY3] - t5 * t372 + (t352 - t399);
     const iiwa14_real_t t417 = t26 * t363 + t13 * t364 - (t5 * parameters[XY3] + t4 * t366);
     const iiwa14_real_t t418 = parameters[XX2] - t413;
+    /* link j3: inertia, momentum beyond */
     const iiwa14_real_t t419 = t1 * parameters[XZ2] + dq[1] * t418 + (t3 * t417 - t2 * t416);
+    /* link j2: inertia, momentum beyond */
     const iiwa14_real_t t420 = t7 * (t7 * (t398 - t395) + t0 * (t415 + t419));
     input_by_dq[0] = IIWA14_C(1.6e3) * parameters[FV1] + IIWA14_C(0.125) * (t395 + t420);
-    const iiwa14_real_t t421 = t3 * t374;
+    const iiwa14_real_t t421 = t3 * t374; /* link j3: inertia, momentum beyond */
     const iiwa14_real_t t422 = t1 * parameters[XY2] - t14 * t418 + (t421 - t373 - t382 * t390);
-    const iiwa14_real_t t423 = IIWA14_C(2.0) * t422;
+    const iiwa14_real_t t423 = IIWA14_C(2.0) * t422; /* link j2: derivatives */
+    /* link j3: inertia, momentum beyond */
     const iiwa14_real_t t424 = IIWA14_C(0.42) * (t3 * t403 - t2 * t405) - t411 * t390;
     const iiwa14_real_t t425 = t14 * parameters[XY2] + t1 * t414 + (t3 * t401 - t2 * t402 + t424);
-    const iiwa14_real_t t426 = IIWA14_C(2.0) * t425;
+    const iiwa14_real_t t426 = IIWA14_C(2.0) * t425; /* link j2: derivatives */
     input_by_dq[7] = IIWA14_C(0.0625) * (t0 * t423 - t7 * t426);
-    const iiwa14_real_t t427 = IIWA14_C(2.0) * t416;
+    const iiwa14_real_t t427 = IIWA14_C(2.0) * t416; /* link j3: derivatives */
     const iiwa14_real_t t428 = IIWA14_C(2.0) * t417;
     const iiwa14_real_t t429 = t3 * t428 - t2 * t427;
     const iiwa14_real_t t430 = IIWA14_C(2.0) * t396;
-    const iiwa14_real_t t431 = IIWA14_C(0.84) * t1;
+    const iiwa14_real_t t431 = IIWA14_C(0.84) * t1; /* link j7: derivatives */
     const iiwa14_real_t t432 = IIWA14_C(0.84) * dq[1];
-    const iiwa14_real_t t433 = t430 + (t389 * t431 + t382 * t432);
+    const iiwa14_real_t t433 = t430 + (t389 * t431 + t382 * t432); /* link j3: derivatives */
     input_by_dq[14] = IIWA14_C(0.0625) * (t0 * t429 + t7 * t433);
-    const iiwa14_real_t t434 = IIWA14_C(-2.0) * t368;
+    const iiwa14_real_t t434 = IIWA14_C(-2.0) * t368; /* link j4: derivatives */
     const iiwa14_real_t t435 = IIWA14_C(-2.0) * t371;
     const iiwa14_real_t t436 = t13 * t434 - t26 * t435;
     const iiwa14_real_t t437 = IIWA14_C(-2.0) * t358;
     const iiwa14_real_t t438 = t3 * t437 - t2 * t436 + t380 * t431;
     const iiwa14_real_t t439 = t26 * t434 + t13 * t435;
-    const iiwa14_real_t t440 = t2 * t406;
+    const iiwa14_real_t t440 = t2 * t406; /* link j4: column of the mass matrix */
     const iiwa14_real_t t441 = t3 * t406;
-    const iiwa14_real_t t442 = t439 + (t441 * t432 - t440 * t431);
+    const iiwa14_real_t t442 = t439 + (t441 * t432 - t440 * t431); /* link j4: derivatives */
     input_by_dq[21] = IIWA14_C(0.0625) * (t0 * t438 + t7 * t442);
-    const iiwa14_real_t t443 = IIWA14_C(2.0) * t349;
+    const iiwa14_real_t t443 = IIWA14_C(2.0) * t349; /* link j5: derivatives */
     const iiwa14_real_t t444 = IIWA14_C(2.0) * t350;
     const iiwa14_real_t t445 = t33 * t443 - t34 * t444;
     const iiwa14_real_t t446 = IIWA14_C(2.0) * t328;
-    const iiwa14_real_t t447 = IIWA14_C(-0.8) * t28;
+    const iiwa14_real_t t447 = IIWA14_C(-0.8) * t28; /* link j7: derivatives */
     const iiwa14_real_t t448 = IIWA14_C(-0.8) * t29;
-    const iiwa14_real_t t449 = t446 + (t321 * t447 + t314 * t448);
+    const iiwa14_real_t t449 = t446 + (t321 * t447 + t314 * t448); /* link j5: derivatives */
     const iiwa14_real_t t450 = t13 * t445 - t26 * t449;
     const iiwa14_real_t t451 = t34 * t443 + t33 * t444;
-    const iiwa14_real_t t452 = t26 * t321;
-    const iiwa14_real_t t453 = t3 * t451 - t2 * t450 + t452 * t431;
+    const iiwa14_real_t t452 = t26 * t321; /* link j5: column of the mass matrix */
+    const iiwa14_real_t t453 = t3 * t451 - t2 * t450 + t452 * t431; /* link j5: derivatives */
     const iiwa14_real_t t454 = t26 * t445 + t13 * t449;
-    const iiwa14_real_t t455 = t13 * t321;
+    const iiwa14_real_t t455 = t13 * t321; /* link j5: column of the mass matrix */
     const iiwa14_real_t t456 = t2 * t455 - t3 * t314;
     const iiwa14_real_t t457 = t3 * t455 + t2 * t314;
-    const iiwa14_real_t t458 = t454 + (t456 * t431 - t457 * t432);
+    const iiwa14_real_t t458 = t454 + (t456 * t431 - t457 * t432); /* link j5: derivatives */
     input_by_dq[28] = IIWA14_C(0.125) * (t0 * t453 + t7 * t458);
-    const iiwa14_real_t t459 = IIWA14_C(2.0) * t300;
+    const iiwa14_real_t t459 = IIWA14_C(2.0) * t300; /* link j6: derivatives */
     const iiwa14_real_t t460 = IIWA14_C(-2.0) * t303;
     const iiwa14_real_t t461 = t56 * t459 + t39 * t460;
     const iiwa14_real_t t462 = IIWA14_C(2.0) * t290;
     const iiwa14_real_t t463 = t33 * t461 - t34 * t462 - t312 * t447;
     const iiwa14_real_t t464 = t56 * t460 - t39 * t459;
-    const iiwa14_real_t t465 = t33 * t339;
+    const iiwa14_real_t t465 = t33 * t339; /* link j6: column of the mass matrix */
     const iiwa14_real_t t466 = t34 * t339;
-    const iiwa14_real_t t467 = t464 - (t465 * t447 + t466 * t448);
+    const iiwa14_real_t t467 = t464 - (t465 * t447 + t466 * t448); /* link j6: derivatives */
     const iiwa14_real_t t468 = t13 * t463 - t26 * t467;
     const iiwa14_real_t t469 = t34 * t461 + t33 * t462 - t312 * t448;
-    const iiwa14_real_t t470 = t13 * t312 - t26 * t465;
-    const iiwa14_real_t t471 = t3 * t469 - t2 * t468 + t470 * t431;
+    const iiwa14_real_t t470 = t13 * t312 - t26 * t465; /* link j6: column of the mass matrix */
+    const iiwa14_real_t t471 = t3 * t469 - t2 * t468 + t470 * t431; /* link j6: derivatives */
     const iiwa14_real_t t472 = t26 * t463 + t13 * t467;
-    const iiwa14_real_t t473 = t13 * t465 + t26 * t312;
+    const iiwa14_real_t t473 = t13 * t465 + t26 * t312; /* link j6: column of the mass matrix */
     const iiwa14_real_t t474 = t3 * t466 - t2 * t473;
     const iiwa14_real_t t475 = t3 * t473 + t2 * t466;
-    const iiwa14_real_t t476 = t472 + (t474 * t431 + t475 * t432);
+    const iiwa14_real_t t476 = t472 + (t474 * t431 + t475 * t432); /* link j6: derivatives */
     input_by_dq[35] = IIWA14_C(0.125) * (t0 * t471 + t7 * t476);
-    const iiwa14_real_t t477 = IIWA14_C(2.0) * t281;
+    const iiwa14_real_t t477 = IIWA14_C(2.0) * t281; /* link j7: derivatives */
     const iiwa14_real_t t478 = IIWA14_C(2.0) * t282;
     const iiwa14_real_t t479 = t63 * t477 - t71 * t478;
     const iiwa14_real_t t480 = IIWA14_C(2.0) * t266;
     const iiwa14_real_t t481 = t480 + (t260 * (IIWA14_C(-0.252) * t68) - t255 * (IIWA14_C(0.252) * t59));
     const iiwa14_real_t t482 = t56 * t479 + t39 * t481;
     const iiwa14_real_t t483 = t71 * t477 + t63 * t478;
-    const iiwa14_real_t t484 = t39 * t260;
-    const iiwa14_real_t t485 = t33 * t482 - t34 * t483 + t484 * t447;
+    const iiwa14_real_t t484 = t39 * t260; /* link j7: column of the mass matrix */
+    const iiwa14_real_t t485 = t33 * t482 - t34 * t483 + t484 * t447; /* link j7: derivatives */
     const iiwa14_real_t t486 = t56 * t481 - t39 * t479;
-    const iiwa14_real_t t487 = t56 * t260;
+    const iiwa14_real_t t487 = t56 * t260; /* link j7: column of the mass matrix */
     const iiwa14_real_t t488 = t33 * t487 + t34 * t255;
     const iiwa14_real_t t489 = t34 * t487 - t33 * t255;
-    const iiwa14_real_t t490 = t486 + (t488 * t447 + t489 * t448);
+    const iiwa14_real_t t490 = t486 + (t488 * t447 + t489 * t448); /* link j7: derivatives */
     const iiwa14_real_t t491 = t13 * t485 - t26 * t490;
     const iiwa14_real_t t492 = t34 * t482 + t33 * t483 + t484 * t448;
-    const iiwa14_real_t t493 = t26 * t488 - t13 * t484;
-    const iiwa14_real_t t494 = t3 * t492 - t2 * t491 + t493 * t431;
+    const iiwa14_real_t t493 = t26 * t488 - t13 * t484; /* link j7: column of the mass matrix */
+    const iiwa14_real_t t494 = t3 * t492 - t2 * t491 + t493 * t431; /* link j7: derivatives */
     const iiwa14_real_t t495 = t26 * t485 + t13 * t490;
-    const iiwa14_real_t t496 = t13 * t488 + t26 * t484;
+    const iiwa14_real_t t496 = t13 * t488 + t26 * t484; /* link j7: column of the mass matrix */
     const iiwa14_real_t t497 = t2 * t496 - t3 * t489;
     const iiwa14_real_t t498 = t3 * t496 + t2 * t489;
-    const iiwa14_real_t t499 = t495 + (t497 * t431 - t498 * t432);
+    const iiwa14_real_t t499 = t495 + (t497 * t431 - t498 * t432); /* link j7: derivatives */
     input_by_dq[42] = IIWA14_C(0.125) * (t0 * t494 + t7 * t499);
+    /* link j7: inertia of it and all beyond */
     const iiwa14_real_t t500 = parameters[XY7] * (IIWA14_C(2.0) * t71) - t63 * t141;
     const iiwa14_real_t t501 = t63 * t500;
     const iiwa14_real_t t502 = IIWA14_C(0.126) * (t275 + IIWA14_C(2.0) * parameters[MZ7]);
     const iiwa14_real_t t503 = t501 - parameters[YY7] - t502 - parameters[XX6];
     const iiwa14_real_t t504 = parameters[YY6] + parameters[ZZ7];
+    /* link j7: column of the mass matrix */
     const iiwa14_real_t t505 = t63 * parameters[XZ7] - t71 * parameters[YZ7] + IIWA14_C(-0.126) * t255;
-    const iiwa14_real_t t506 = t505 - parameters[XY6];
+    const iiwa14_real_t t506 = t505 - parameters[XY6]; /* link j7: inertia of it and all beyond */
+    /* link j6: inertia of it and all beyond */
     const iiwa14_real_t t507 = t506 * (IIWA14_C(2.0) * t39) - t56 * (t503 + t504);
     const iiwa14_real_t t508 = t56 * t507;
     const iiwa14_real_t t509 = parameters[XX5] + (t504 + t508);
+    /* link j7: inertia of it and all beyond */
     const iiwa14_real_t t510 = parameters[ZZ6] + (parameters[XX7] + t501 + t502);
-    const iiwa14_real_t t511 = parameters[YY5] + t510;
+    const iiwa14_real_t t511 = parameters[YY5] + t510; /* link j6: inertia of it and all beyond */
+    /* link j7: column of the mass matrix */
     const iiwa14_real_t t512 = t71 * parameters[XZ7] + t63 * parameters[YZ7] - IIWA14_C(0.126) * t260;
-    const iiwa14_real_t t513 = parameters[YZ6] - t512;
+    const iiwa14_real_t t513 = parameters[YZ6] - t512; /* link j7: inertia of it and all beyond */
     const iiwa14_real_t t514 = parameters[XZ6] + (parameters[XY7] - t71 * t500);
-    const iiwa14_real_t t515 = t56 * t514 - t39 * t513;
-    const iiwa14_real_t t516 = parameters[XY5] + t515;
+    const iiwa14_real_t t515 = t56 * t514 - t39 * t513; /* link j6: column of the mass matrix */
+    const iiwa14_real_t t516 = parameters[XY5] + t515; /* link j6: inertia of it and all beyond */
+    /* link j5: inertia of it and all beyond */
     const iiwa14_real_t t517 = t33 * (t509 - t511) + t516 * (IIWA14_C(-2.0) * t34);
     const iiwa14_real_t t518 = t33 * t517;
     const iiwa14_real_t t519 = IIWA14_C(0.4) * (t343 + IIWA14_C(2.0) * t340);
     const iiwa14_real_t t520 = parameters[XX4] + (t511 + t518 + t519);
-    const iiwa14_real_t t521 = t503 + t508 - parameters[ZZ5];
-    const iiwa14_real_t t522 = t521 - parameters[YY4];
+    const iiwa14_real_t t521 = t503 + t508 - parameters[ZZ5]; /* link j6: inertia of it and all beyond */
+    const iiwa14_real_t t522 = t521 - parameters[YY4]; /* link j5: inertia of it and all beyond */
+    /* link j6: inertia of it and all beyond */
     const iiwa14_real_t t523 = parameters[XZ5] + (t506 - t39 * t507);
-    const iiwa14_real_t t524 = t39 * t514 + t56 * t513;
-    const iiwa14_real_t t525 = parameters[YZ5] - t524;
+    const iiwa14_real_t t524 = t39 * t514 + t56 * t513; /* link j6: column of the mass matrix */
+    const iiwa14_real_t t525 = parameters[YZ5] - t524; /* link j6: inertia of it and all beyond */
+    /* link j5: column of the mass matrix */
     const iiwa14_real_t t526 = t33 * t523 - t34 * t525 + IIWA14_C(0.4) * t314;
-    const iiwa14_real_t t527 = parameters[XY4] + t526;
+    const iiwa14_real_t t527 = parameters[XY4] + t526; /* link j5: inertia of it and all beyond */
+    /* link j4: inertia of it and all beyond */
     const iiwa14_real_t t528 = t13 * (t520 + t522) + t527 * (IIWA14_C(-2.0) * t26);
     const iiwa14_real_t t529 = t13 * t528;
     const iiwa14_real_t t530 = parameters[XX3] + (t529 - t522);
+    /* link j5: inertia of it and all beyond */
     const iiwa14_real_t t531 = parameters[ZZ4] + (t509 - t518 + t519);
-    const iiwa14_real_t t532 = parameters[YY3] + t531;
+    const iiwa14_real_t t532 = parameters[YY3] + t531; /* link j4: inertia of it and all beyond */
+    /* link j5: inertia of it and all beyond */
     const iiwa14_real_t t533 = t516 + t34 * t517 - parameters[XZ4];
+    /* link j5: column of the mass matrix */
     const iiwa14_real_t t534 = t34 * t523 + t33 * t525 + IIWA14_C(-0.4) * t321;
-    const iiwa14_real_t t535 = t534 - parameters[YZ4];
-    const iiwa14_real_t t536 = t26 * t535 - t13 * t533;
-    const iiwa14_real_t t537 = parameters[XY3] - t536;
+    const iiwa14_real_t t535 = t534 - parameters[YZ4]; /* link j5: inertia of it and all beyond */
+    const iiwa14_real_t t536 = t26 * t535 - t13 * t533; /* link j4: column of the mass matrix */
+    const iiwa14_real_t t537 = parameters[XY3] - t536; /* link j4: inertia of it and all beyond */
+    /* link j3: inertia of it and all beyond */
     const iiwa14_real_t t538 = t2 * (t530 - t532) - t537 * (IIWA14_C(2.0) * t3);
     const iiwa14_real_t t539 = t2 * t538;
     const iiwa14_real_t t540 = IIWA14_C(0.42) * (t410 + IIWA14_C(2.0) * t407);
     const iiwa14_real_t t541 = parameters[XX2] + (t532 + t539 + t540);
-    const iiwa14_real_t t542 = t529 - t520 - parameters[ZZ3];
-    const iiwa14_real_t t543 = parameters[YY2] - t542;
+    const iiwa14_real_t t542 = t529 - t520 - parameters[ZZ3]; /* link j4: inertia of it and all beyond */
+    const iiwa14_real_t t543 = parameters[YY2] - t542; /* link j3: inertia of it and all beyond */
+    /* link j4: inertia of it and all beyond */
     const iiwa14_real_t t544 = parameters[XZ3] + (t527 + t26 * t528);
-    const iiwa14_real_t t545 = t26 * t533 + t13 * t535;
-    const iiwa14_real_t t546 = parameters[YZ3] + t545;
+    const iiwa14_real_t t545 = t26 * t533 + t13 * t535; /* link j4: column of the mass matrix */
+    const iiwa14_real_t t546 = parameters[YZ3] + t545; /* link j4: inertia of it and all beyond */
+    /* link j3: column of the mass matrix */
     const iiwa14_real_t t547 = t3 * t546 - t2 * t544 + IIWA14_C(0.42) * t382;
-    const iiwa14_real_t t548 = parameters[XY2] + t547;
+    const iiwa14_real_t t548 = parameters[XY2] + t547; /* link j3: inertia of it and all beyond */
+    /* link j2: inertia of it and all beyond */
     const iiwa14_real_t t549 = t7 * (t7 * (t543 - t541) + t548 * (IIWA14_C(2.0) * t0));
     input_by_ddq[0] = IIWA14_C(1.6e3) * parameters[IA1] + IIWA14_C(0.0625) * (parameters[ZZ1] + (t541
         + t549));
+    /* link j3: inertia of it and all beyond */
     const iiwa14_real_t t550 = parameters[XZ2] + (t537 + t3 * t538);
+    /* link j3: column of the mass matrix */
     const iiwa14_real_t t551 = IIWA14_C(0.42) * t389 - (t3 * t544 + t2 * t546);
-    const iiwa14_real_t t552 = parameters[YZ2] + t551;
+    const iiwa14_real_t t552 = parameters[YZ2] + t551; /* link j3: inertia of it and all beyond */
     const iiwa14_real_t t553 = IIWA14_C(-0.0625) * (t0 * t550 + t7 * t552);
     input_by_ddq[7] = t553;
     const iiwa14_real_t t554 = IIWA14_C(0.0625) * (t0 * t547 - t7 * t542);
     input_by_ddq[14] = t554;
+    /* link j4: column of the mass matrix */
     const iiwa14_real_t t555 = IIWA14_C(0.42) * t441 - (t2 * t536 + t3 * t531);
     const iiwa14_real_t t556 = IIWA14_C(0.0625) * (t0 * t555 - t7 * t545);
     input_by_ddq[21] = t556;
-    const iiwa14_real_t t557 = t13 * t526 + t26 * t521;
+    const iiwa14_real_t t557 = t13 * t526 + t26 * t521; /* link j5: column of the mass matrix */
     const iiwa14_real_t t558 = t3 * t534 - t2 * t557 + IIWA14_C(-0.42) * t457;
     const iiwa14_real_t t559 = t26 * t526 - t13 * t521;
     const iiwa14_real_t t560 = t0 * t558 + t7 * t559;
     input_by_ddq[28] = IIWA14_C(0.125) * t560;
+    /* link j6: column of the mass matrix */
     const iiwa14_real_t t561 = t33 * t515 - t34 * t510 + IIWA14_C(-0.4) * t466;
     const iiwa14_real_t t562 = t13 * t561 + t26 * t524;
     const iiwa14_real_t t563 = t34 * t515 + t33 * t510 + IIWA14_C(0.4) * t465;
@@ -801,7 +899,7 @@ int iiwa14_inverse_dynamics_derivatives_standard(
     const iiwa14_real_t t565 = t26 * t561 - t13 * t524;
     const iiwa14_real_t t566 = t0 * t564 + t7 * t565;
     input_by_ddq[35] = IIWA14_C(0.125) * t566;
-    const iiwa14_real_t t567 = t56 * t505 + t39 * parameters[ZZ7];
+    const iiwa14_real_t t567 = t56 * t505 + t39 * parameters[ZZ7]; /* link j7: column of the mass matrix */
     const iiwa14_real_t t568 = t33 * t567 - t34 * t512 + IIWA14_C(0.4) * t489;
     const iiwa14_real_t t569 = t39 * t505 - t56 * parameters[ZZ7];
     const iiwa14_real_t t570 = t13 * t568 + t26 * t569;
@@ -810,49 +908,71 @@ int iiwa14_inverse_dynamics_derivatives_standard(
     const iiwa14_real_t t573 = t26 * t568 - t13 * t569;
     const iiwa14_real_t t574 = t0 * t572 + t7 * t573;
     input_by_ddq[42] = IIWA14_C(0.125) * t574;
-    const iiwa14_real_t t575 = IIWA14_C(2.0) * t14;
+    const iiwa14_real_t t575 = IIWA14_C(2.0) * t14; /* link j2: derivatives */
     const iiwa14_real_t t576 = IIWA14_C(-2.0) * t1;
-    const iiwa14_real_t t577 = t95 + t215;
+    const iiwa14_real_t t577 = t95 + t215; /* link j3: motion */
+    /* link j2: derivatives */
     const iiwa14_real_t t578 = t395 * t575 + t415 * t576 + (t8 * t541 - t17 * t548 + t577 * t550);
-    const iiwa14_real_t t579 = parameters[MZ2] + t389;
+    const iiwa14_real_t t579 = parameters[MZ2] + t389; /* link j3: inertia of it and all beyond */
+    /* link j2: derivatives */
     const iiwa14_real_t t580 = t419 * t575 + t398 * t576 + (t8 * t548 - t17 * t543 + t577 * t552);
     const iiwa14_real_t t581 = t0 * (t223 + (t578 + t91 * t579)) + t7 * (t217 + (t580 + t97 * t579));
     input_by_q[1] = IIWA14_C(0.0625) * t581;
+    /* link j3: inertia of it and all beyond */
     const iiwa14_real_t t582 = parameters[ZZ2] + (t530 - t539 + t540);
+    /* link j2: derivatives */
     const iiwa14_real_t t583 = t17 * t552 - t8 * t550 - t577 * t582 + (t14 * t423 + t1 * t426);
     const iiwa14_real_t t584 = t91 * (parameters[MX2] + t382) + t97 * (parameters[MY2] - t411) + t583;
     input_by_q[8] = IIWA14_C(0.0625) * t584;
+    /* link j3: derivatives */
     const iiwa14_real_t t585 = t14 * t429 - t1 * t433 + (t8 * t547 + t17 * t542 + t577 * t551);
     input_by_q[15] = IIWA14_C(0.0625) * (t585 + t97 * t389);
+    /* link j4: column of the mass matrix */
     const iiwa14_real_t t586 = t3 * t536 - t2 * t531 - IIWA14_C(-0.42) * t440;
+    /* link j4: derivatives */
     const iiwa14_real_t t587 = t14 * t438 - t1 * t442 + (t8 * t555 + t17 * t545 - t577 * t586);
     input_by_q[22] = IIWA14_C(0.0625) * (t587 + (t91 * t380 - t97 * t440));
+    /* link j5: column of the mass matrix */
     const iiwa14_real_t t588 = t3 * t557 + t2 * t534 + IIWA14_C(-0.42) * t456;
+    /* link j5: derivatives */
     const iiwa14_real_t t589 = t14 * t453 - t1 * t458 + (t8 * t558 - t17 * t559 - t577 * t588);
     input_by_q[29] = IIWA14_C(0.125) * (t589 + (t97 * t456 + t91 * t452));
+    /* link j6: column of the mass matrix */
     const iiwa14_real_t t590 = t3 * t562 + t2 * t563 + IIWA14_C(-0.42) * t474;
+    /* link j6: derivatives */
     const iiwa14_real_t t591 = t14 * t471 - t1 * t476 + (t8 * t564 - t17 * t565 - t577 * t590);
     input_by_q[36] = IIWA14_C(0.125) * (t591 + (t97 * t474 + t91 * t470));
+    /* link j7: column of the mass matrix */
     const iiwa14_real_t t592 = t3 * t570 + t2 * t571 + IIWA14_C(-0.42) * t497;
+    /* link j7: derivatives */
     const iiwa14_real_t t593 = t14 * t494 - t1 * t499 + (t8 * t572 - t17 * t573 - t577 * t592);
     input_by_q[43] = IIWA14_C(0.125) * (t593 + (t97 * t497 + t91 * t493));
     const iiwa14_real_t t594 = parameters[ZZ2] - t413;
+    /* link j3: inertia, momentum beyond */
     const iiwa14_real_t t595 = dq[1] * parameters[YZ2] + t14 * t594 + (t421 - t367 + t389 * t383);
+    /* link j2: derivatives */
     const iiwa14_real_t t596 = t0 * (IIWA14_C(2.0) * t595 + (t541 * t575 + t548 * t576));
+    /* link j3: inertia, momentum beyond */
     const iiwa14_real_t t597 = t3 * t416 + t2 * t417 - (dq[1] * parameters[XZ2] + t1 * t594);
+    /* link j2: derivatives */
     const iiwa14_real_t t598 = t7 * (IIWA14_C(2.0) * t597 + (t548 * t575 + t543 * t576));
     input_by_dq[1] = IIWA14_C(0.0625) * (t596 + t598);
     const iiwa14_real_t t599 = IIWA14_C(2.0) * (t393 - t397 + (t392 + (t357 + t375 + t391)));
     const iiwa14_real_t t600 = IIWA14_C(0.0625) * (t599 + IIWA14_C(2.0) * (t1 * t552 - t14 * t550));
     input_by_dq[8] = IIWA14_C(1.6e3) * parameters[FV2] + t600;
+    /* link j3: derivatives */
     const iiwa14_real_t t601 = t3 * t427 + t2 * t428 + IIWA14_C(2.0) * (t14 * t547 + t1 * t542);
     input_by_dq[15] = IIWA14_C(0.0625) * t601;
+    /* link j4: derivatives */
     const iiwa14_real_t t602 = t3 * t436 + t2 * t437 + t380 * t432 + IIWA14_C(2.0) * (t14 * t555 + t1 * t545);
     input_by_dq[22] = IIWA14_C(0.0625) * t602;
+    /* link j5: derivatives */
     const iiwa14_real_t t603 = t3 * t450 + t2 * t451 + t452 * t432 + IIWA14_C(2.0) * (t14 * t558 - t1 * t559);
     input_by_dq[29] = IIWA14_C(0.125) * t603;
+    /* link j6: derivatives */
     const iiwa14_real_t t604 = t3 * t468 + t2 * t469 + t470 * t432 + IIWA14_C(2.0) * (t14 * t564 - t1 * t565);
     input_by_dq[36] = IIWA14_C(0.125) * t604;
+    /* link j7: derivatives */
     const iiwa14_real_t t605 = t3 * t491 + t2 * t492 + t493 * t432 + IIWA14_C(2.0) * (t14 * t572 - t1 * t573);
     input_by_dq[43] = IIWA14_C(0.125) * t605;
     input_by_ddq[1] = t553;
@@ -864,9 +984,10 @@ int iiwa14_inverse_dynamics_derivatives_standard(
     input_by_ddq[29] = IIWA14_C(0.125) * t588;
     input_by_ddq[36] = IIWA14_C(0.125) * t590;
     input_by_ddq[43] = IIWA14_C(0.125) * t592;
-    const iiwa14_real_t t608 = IIWA14_C(2.0) * t5;
+    const iiwa14_real_t t608 = IIWA14_C(2.0) * t5; /* link j3: derivatives */
     const iiwa14_real_t t609 = IIWA14_C(-2.0) * t4;
-    const iiwa14_real_t t610 = t198 + t189;
+    const iiwa14_real_t t610 = t198 + t189; /* link j4: motion */
+    /* link j3: derivatives */
     const iiwa14_real_t t611 = t357 * t608 + t367 * t609 + (t40 * t530 + t21 * t537 - t610 * t544);
     const iiwa14_real_t t612 = t611 + t94 * t407 - t200;
     const iiwa14_real_t t613 = t373 * t608 + t360 * t609 + (t40 * t537 + t21 * t532 - t610 * t546);
@@ -884,15 +1005,19 @@ int iiwa14_inverse_dynamics_derivatives_standard(
     input_by_q[9] = IIWA14_C(0.0625) * t623;
     const iiwa14_real_t t624 = IIWA14_C(0.0625) * (t621 + (t620 + (t5 * t427 - t4 * t428)));
     input_by_q[16] = t624;
+    /* link j4: derivatives */
     const iiwa14_real_t t625 = t5 * t436 - t4 * t437 + (t40 * t536 - t21 * t531 + t610 * t545);
     input_by_q[23] = IIWA14_C(0.0625) * (t625 - t101 * t406);
+    /* link j5: derivatives */
     const iiwa14_real_t t626 = t5 * t450 - t4 * t451 + (t40 * t557 + t21 * t534 - t610 * t559);
     input_by_q[30] = IIWA14_C(0.125) * (t626 + (t101 * t455 + t94 * t314));
+    /* link j6: derivatives */
     const iiwa14_real_t t627 = t5 * t468 - t4 * t469 + (t40 * t562 + t21 * t563 - t610 * t565);
     input_by_q[37] = IIWA14_C(0.125) * (t627 - (t101 * t473 + t94 * t466));
+    /* link j7: derivatives */
     const iiwa14_real_t t628 = t5 * t491 - t4 * t492 + (t40 * t570 + t21 * t571 - t610 * t573);
     input_by_q[44] = IIWA14_C(0.125) * (t628 + (t101 * t496 + t94 * t489));
-    const iiwa14_real_t t629 = IIWA14_C(2.0) * t401 - (t530 * t608 + t537 * t609);
+    const iiwa14_real_t t629 = IIWA14_C(2.0) * t401 - (t530 * t608 + t537 * t609); /* link j3: derivatives */
     const iiwa14_real_t t630 = IIWA14_C(2.0) * t402 + (t537 * t608 + t532 * t609);
     const iiwa14_real_t t631 = IIWA14_C(2.0) * t403 - t407 * t608;
     const iiwa14_real_t t632 = IIWA14_C(2.0) * t405 + t407 * t609;
@@ -919,7 +1044,7 @@ int iiwa14_inverse_dynamics_derivatives_standard(
     input_by_ddq[30] = IIWA14_C(0.125) * t559;
     input_by_ddq[37] = IIWA14_C(0.125) * t565;
     input_by_ddq[44] = IIWA14_C(0.125) * t573;
-    const iiwa14_real_t t642 = IIWA14_C(2.0) * t44;
+    const iiwa14_real_t t642 = IIWA14_C(2.0) * t44; /* link j4: derivatives */
     const iiwa14_real_t t643 = IIWA14_C(-2.0) * t28;
     const iiwa14_real_t t644 = t352 * t642 + t330 * t643 + (t27 * t527 - t47 * t522 + t209 * t535);
     const iiwa14_real_t t645 = t180 + (t644 - t107 * t376);
@@ -941,13 +1066,16 @@ int iiwa14_inverse_dynamics_derivatives_standard(
     input_by_q[17] = IIWA14_C(0.0625) * t657;
     const iiwa14_real_t t659 = IIWA14_C(0.0625) * (t650 + (t44 * t434 - t28 * t435 - t649));
     input_by_q[24] = t659;
+    /* link j5: derivatives */
     const iiwa14_real_t t660 = t44 * t445 - t28 * t449 + (t27 * t526 - t47 * t521 + t209 * t534);
     input_by_q[31] = IIWA14_C(0.125) * (t660 + t107 * t321);
+    /* link j6: derivatives */
     const iiwa14_real_t t661 = t44 * t463 - t28 * t467 + (t27 * t561 - t47 * t524 + t209 * t563);
     input_by_q[38] = IIWA14_C(0.125) * (t661 + (t99 * t312 - t107 * t465));
+    /* link j7: derivatives */
     const iiwa14_real_t t662 = t44 * t485 - t28 * t490 + (t27 * t568 - t47 * t569 + t209 * t571);
     input_by_q[45] = IIWA14_C(0.125) * (t662 + (t107 * t488 - t99 * t484));
-    const iiwa14_real_t t663 = IIWA14_C(-2.0) * t363 + (t520 * t642 + t527 * t643);
+    const iiwa14_real_t t663 = IIWA14_C(-2.0) * t363 + (t520 * t642 + t527 * t643); /* link j4: derivatives */
     const iiwa14_real_t t664 = IIWA14_C(-2.0) * t364 + (t527 * t642 - t522 * t643);
     const iiwa14_real_t t665 = t26 * t664 - t13 * t663;
     const iiwa14_real_t t666 = t437 + (t533 * t642 + t535 * t643);
@@ -975,7 +1103,7 @@ int iiwa14_inverse_dynamics_derivatives_standard(
     input_by_ddq[31] = IIWA14_C(-0.125) * t534;
     input_by_ddq[38] = IIWA14_C(-0.125) * t563;
     input_by_ddq[45] = IIWA14_C(-0.125) * t571;
-    const iiwa14_real_t t676 = IIWA14_C(-2.0) * t36;
+    const iiwa14_real_t t676 = IIWA14_C(-2.0) * t36; /* link j5: derivatives */
     const iiwa14_real_t t677 = IIWA14_C(-2.0) * t35;
     const iiwa14_real_t t678 = t289 * t676 - t299 * t677 + (t64 * t509 + t51 * t516 - t203 * t523);
     const iiwa14_real_t t679 = t161 + (t678 + t103 * t340);
@@ -1004,11 +1132,13 @@ int iiwa14_inverse_dynamics_derivatives_standard(
     input_by_q[25] = IIWA14_C(-0.0625) * t693;
     const iiwa14_real_t t699 = IIWA14_C(0.125) * (t689 + (t688 - (t36 * t443 + t35 * t444)));
     input_by_q[32] = t699;
+    /* link j6: derivatives */
     const iiwa14_real_t t700 = t64 * t515 + t51 * t510 + t203 * t524 - (t36 * t461 + t35 * t462);
     input_by_q[39] = IIWA14_C(0.125) * (t700 - t111 * t339);
+    /* link j7: derivatives */
     const iiwa14_real_t t701 = t64 * t567 + t51 * t512 + t203 * t569 - (t36 * t482 + t35 * t483);
     input_by_q[46] = IIWA14_C(0.125) * (t701 + (t111 * t487 - t103 * t255));
-    const iiwa14_real_t t702 = IIWA14_C(2.0) * t333 + (t509 * t676 + t516 * t677);
+    const iiwa14_real_t t702 = IIWA14_C(2.0) * t333 + (t509 * t676 + t516 * t677); /* link j5: derivatives */
     const iiwa14_real_t t703 = IIWA14_C(-2.0) * t334 + (t516 * t676 + t511 * t677);
     const iiwa14_real_t t704 = IIWA14_C(-2.0) * t335 + t340 * t676;
     const iiwa14_real_t t705 = IIWA14_C(-2.0) * t337 - t340 * t677;
@@ -1041,7 +1171,7 @@ int iiwa14_inverse_dynamics_derivatives_standard(
     input_by_ddq[39] = t719;
     const iiwa14_real_t t720 = IIWA14_C(-0.125) * t569;
     input_by_ddq[46] = t720;
-    const iiwa14_real_t t721 = IIWA14_C(2.0) * t58;
+    const iiwa14_real_t t721 = IIWA14_C(2.0) * t58; /* link j6: derivatives */
     const iiwa14_real_t t722 = IIWA14_C(-2.0) * t68;
     const iiwa14_real_t t723 = t170 * t513 - (t83 * t506 + t57 * t504) - (t284 * t721 + t268 * t722);
     const iiwa14_real_t t724 = t723 + t115 * t308 - t140;
@@ -1074,9 +1204,10 @@ int iiwa14_inverse_dynamics_derivatives_standard(
     input_by_q[33] = IIWA14_C(0.125) * t739;
     const iiwa14_real_t t747 = IIWA14_C(0.125) * (t729 + (t728 + (t68 * t460 - t58 * t459)));
     input_by_q[40] = t747;
+    /* link j7: derivatives */
     const iiwa14_real_t t748 = t68 * t481 - t58 * t479 - (t83 * t505 + t57 * parameters[ZZ7] + t170 * t512);
     input_by_q[47] = IIWA14_C(0.125) * (t748 + t115 * t260);
-    const iiwa14_real_t t749 = IIWA14_C(2.0) * t295 - (t503 * t721 - t506 * t722);
+    const iiwa14_real_t t749 = IIWA14_C(2.0) * t295 - (t503 * t721 - t506 * t722); /* link j6: derivatives */
     const iiwa14_real_t t750 = IIWA14_C(2.0) * t296 - (t506 * t721 + t504 * t722);
     const iiwa14_real_t t751 = t39 * t750 - t56 * t749;
     const iiwa14_real_t t752 = t462 + (t513 * t722 - t514 * t721);
@@ -1112,7 +1243,7 @@ int iiwa14_inverse_dynamics_derivatives_standard(
     input_by_ddq[40] = IIWA14_C(3.2e3) * parameters[IA6] + IIWA14_C(0.125) * t510;
     const iiwa14_real_t t769 = IIWA14_C(0.125) * t512;
     input_by_ddq[47] = t769;
-    const iiwa14_real_t t770 = IIWA14_C(-2.0) * t73;
+    const iiwa14_real_t t770 = IIWA14_C(-2.0) * t73; /* link j7: derivatives */
     const iiwa14_real_t t771 = IIWA14_C(2.0) * t78;
     const iiwa14_real_t t772 = t251 * t771 - t244 * t770 + (t77 * parameters[XX7] + t72 * parameters[XY7]
         - t165 * parameters[XZ7]);

@@ -6,7 +6,7 @@
  * Arm iiwa14, description 4f01a5afe35e97fd.
  * SPDX-License-Identifier: 0BSD
  *
- * Operations: 744 (387 mul, 357 add, 0 neg), 12 trig, 7 other.
+ * Operations: 744 (387 mul, 357 add, 0 neg), 12 trig, 7 other calls (sign, select and the like).
  *
  * @param[in]   q           [7]   [rad]      joint coordinates; norm at most 10000
  * @param[in]   dq          [7]   [rad/s]    joint velocities; norm at most 100000
@@ -120,11 +120,11 @@
  */
 #include "iiwa14_private.h"
 
-#if IIWA14_GENERATION != 0x27C72E36UL
+#if IIWA14_GENERATION != 0x1E31C9F2UL
 #error "iiwa14.h and iiwa14_inverse_dynamics_standard.c are of different generations: generate the arm again"
 #endif
 
-int iiwa14_inverse_dynamics_standard(
+iiwa14_status_t iiwa14_inverse_dynamics_standard(
     const iiwa14_real_t q[IIWA14_N_JOINTS],
     const iiwa14_real_t dq[IIWA14_N_JOINTS],
     const iiwa14_real_t ddq[IIWA14_N_JOINTS],
@@ -136,7 +136,7 @@ int iiwa14_inverse_dynamics_standard(
         XX5, XY5, XZ5, YY5, YZ5, ZZ5, MX5, MY5, MZ5, M5, XX6, XY6, XZ6, YY6, YZ6, ZZ6, MX6, MY6, MZ6, M6, XX7,
         XY7, XZ7, YY7, YZ7, ZZ7, MX7, MY7, MZ7, M7, FV1, FC1, IA1, FV2, FC2, IA2, FV3, FC3, IA3, FV4, FC4,
         IA4, FV5, FC5, IA5, FV6, FC6, IA6, FV7, FC7, IA7 };
-    int status = IIWA14_STATUS_OK;
+    iiwa14_status_t status = IIWA14_STATUS_OK;
 
     if (!iiwa14_within_joints(q, IIWA14_C(1.0e8))
         || !iiwa14_within_joints(dq, IIWA14_C(1.0e10))
@@ -161,66 +161,66 @@ int iiwa14_inverse_dynamics_standard(
     IIWA14_SINCOS(q[5], &t39, &t56);
     iiwa14_real_t t71, t63;
     IIWA14_SINCOS(q[6], &t71, &t63);
-    const iiwa14_real_t t1 = t0 * dq[0];
-    const iiwa14_real_t t4 = t2 * t1 - t3 * dq[1];
+    const iiwa14_real_t t1 = t0 * dq[0]; /* link j2: motion */
+    const iiwa14_real_t t4 = t2 * t1 - t3 * dq[1]; /* link j3: motion */
     const iiwa14_real_t t5 = t3 * t1 + t2 * dq[1];
     const iiwa14_real_t t6 = t4 * t5;
-    const iiwa14_real_t t8 = t7 * ddq[0];
+    const iiwa14_real_t t8 = t7 * ddq[0]; /* link j2: motion */
     const iiwa14_real_t t9 = dq[1] * t1;
     const iiwa14_real_t t10 = t8 - t9;
-    const iiwa14_real_t t11 = ddq[2] + t10;
-    const iiwa14_real_t t12 = t11 + t6;
-    const iiwa14_real_t t14 = t7 * dq[0];
+    const iiwa14_real_t t11 = ddq[2] + t10; /* link j3: motion */
+    const iiwa14_real_t t12 = t11 + t6; /* link j4: motion */
+    const iiwa14_real_t t14 = t7 * dq[0]; /* link j2: motion */
     const iiwa14_real_t t15 = t1 * t14;
-    const iiwa14_real_t t16 = ddq[1] - t15;
-    const iiwa14_real_t t17 = t0 * ddq[0];
+    const iiwa14_real_t t16 = ddq[1] - t15; /* link j3: motion */
+    const iiwa14_real_t t17 = t0 * ddq[0]; /* link j2: motion */
     const iiwa14_real_t t18 = dq[1] * t14;
     const iiwa14_real_t t19 = t17 + t18;
-    const iiwa14_real_t t20 = t18 + t19;
+    const iiwa14_real_t t20 = t18 + t19; /* link j3: motion */
     const iiwa14_real_t t21 = t3 * t16 - t2 * t20;
     const iiwa14_real_t t22 = dq[2] + t14;
     const iiwa14_real_t t23 = t5 * t22;
     const iiwa14_real_t t24 = t21 + t23;
-    const iiwa14_real_t t25 = t23 + t24;
+    const iiwa14_real_t t25 = t23 + t24; /* link j4: motion */
     const iiwa14_real_t t27 = t13 * t12 - t26 * t25;
     const iiwa14_real_t t28 = t26 * t22 - t13 * t4;
     const iiwa14_real_t t29 = dq[3] - t5;
     const iiwa14_real_t t30 = t28 * t29;
     const iiwa14_real_t t31 = t27 - t30;
-    const iiwa14_real_t t32 = ddq[4] + t31;
+    const iiwa14_real_t t32 = ddq[4] + t31; /* link j5: motion */
     const iiwa14_real_t t35 = t34 * t29 - t33 * t28;
     const iiwa14_real_t t36 = t34 * t28 + t33 * t29;
     const iiwa14_real_t t37 = t35 * t36;
-    const iiwa14_real_t t38 = t32 - t37;
-    const iiwa14_real_t t40 = t2 * t16 + t3 * t20;
+    const iiwa14_real_t t38 = t32 - t37; /* link j6: motion */
+    const iiwa14_real_t t40 = t2 * t16 + t3 * t20; /* link j3: motion */
     const iiwa14_real_t t41 = t4 * t22;
     const iiwa14_real_t t42 = t40 + t41;
-    const iiwa14_real_t t43 = t42 - ddq[3];
+    const iiwa14_real_t t43 = t42 - ddq[3]; /* link j4: motion */
     const iiwa14_real_t t44 = t26 * t4 + t13 * t22;
     const iiwa14_real_t t45 = t28 * t44;
-    const iiwa14_real_t t46 = t43 + t45;
-    const iiwa14_real_t t47 = t26 * t12 + t13 * t25;
+    const iiwa14_real_t t46 = t43 + t45; /* link j5: motion */
+    const iiwa14_real_t t47 = t26 * t12 + t13 * t25; /* link j4: motion */
     const iiwa14_real_t t48 = t44 * t29;
     const iiwa14_real_t t49 = t47 + t48;
-    const iiwa14_real_t t50 = t48 + t49;
+    const iiwa14_real_t t50 = t48 + t49; /* link j5: motion */
     const iiwa14_real_t t51 = t34 * t46 + t33 * t50;
     const iiwa14_real_t t52 = dq[4] + t44;
     const iiwa14_real_t t53 = t36 * t52;
     const iiwa14_real_t t54 = t53 - t51;
-    const iiwa14_real_t t55 = t53 + t54;
+    const iiwa14_real_t t55 = t53 + t54; /* link j6: motion */
     const iiwa14_real_t t57 = t39 * t38 + t56 * t55;
     const iiwa14_real_t t58 = t56 * t52 - t39 * t35;
     const iiwa14_real_t t59 = t36 - dq[5];
     const iiwa14_real_t t60 = t58 * t59;
     const iiwa14_real_t t61 = t57 - t60;
-    const iiwa14_real_t t62 = t61 - t60;
-    const iiwa14_real_t t64 = t33 * t46 - t34 * t50;
+    const iiwa14_real_t t62 = t61 - t60; /* link j7: motion */
+    const iiwa14_real_t t64 = t33 * t46 - t34 * t50; /* link j5: motion */
     const iiwa14_real_t t65 = t35 * t52;
     const iiwa14_real_t t66 = t64 + t65;
-    const iiwa14_real_t t67 = ddq[5] + t66;
+    const iiwa14_real_t t67 = ddq[5] + t66; /* link j6: motion */
     const iiwa14_real_t t68 = t56 * t35 + t39 * t52;
     const iiwa14_real_t t69 = t68 * t58;
-    const iiwa14_real_t t70 = t67 - t69;
+    const iiwa14_real_t t70 = t67 - t69; /* link j7: motion */
     const iiwa14_real_t t72 = t71 * t70 - t63 * t62;
     const iiwa14_real_t t73 = t71 * t68 - t63 * t59;
     const iiwa14_real_t t74 = dq[6] + t58;
@@ -230,214 +230,265 @@ int iiwa14_inverse_dynamics_standard(
     const iiwa14_real_t t78 = t63 * t68 + t71 * t59;
     const iiwa14_real_t t79 = t78 * t74;
     const iiwa14_real_t t80 = t77 + t79;
-    const iiwa14_real_t t81 = t79 + t80;
+    const iiwa14_real_t t81 = t79 + t80; /* link j7: columns */
+    /* link j7: force and moment */
     const iiwa14_real_t t82 = t75 * (parameters[ZZ7] - parameters[YY7]) + t76 * parameters[XX7]
         + t81 * parameters[XY7];
-    const iiwa14_real_t t83 = t56 * t38 - t39 * t55;
+    const iiwa14_real_t t83 = t56 * t38 - t39 * t55; /* link j6: motion */
     const iiwa14_real_t t84 = t68 * t59;
     const iiwa14_real_t t85 = t83 + t84;
-    const iiwa14_real_t t86 = ddq[6] + t85;
+    const iiwa14_real_t t86 = ddq[6] + t85; /* link j7: motion */
     const iiwa14_real_t t87 = t78 * t73;
-    const iiwa14_real_t t88 = t86 - t87;
-    const iiwa14_real_t t89 = t73 * t73;
+    const iiwa14_real_t t88 = t86 - t87; /* link j7: columns */
+    const iiwa14_real_t t89 = t73 * t73; /* link j7: motion */
     const iiwa14_real_t t90 = t74 * t74;
-    const iiwa14_real_t t91 = IIWA14_C(9.81) * t0;
-    const iiwa14_real_t t92 = IIWA14_C(0.42) * t16 - t91;
+    const iiwa14_real_t t91 = IIWA14_C(9.81) * t0; /* link j2: motion */
+    const iiwa14_real_t t92 = IIWA14_C(0.42) * t16 - t91; /* link j3: motion */
     const iiwa14_real_t t93 = IIWA14_C(0.42) * t20;
     const iiwa14_real_t t94 = t2 * t92 + t3 * t93;
-    const iiwa14_real_t t95 = t1 * t1;
+    const iiwa14_real_t t95 = t1 * t1; /* link j2: motion */
     const iiwa14_real_t t96 = dq[1] * dq[1];
     const iiwa14_real_t t97 = IIWA14_C(-9.81) * t7;
-    const iiwa14_real_t t98 = t97 + IIWA14_C(0.42) * (t95 + t96);
-    const iiwa14_real_t t99 = t13 * t94 - t26 * t98;
-    const iiwa14_real_t t100 = IIWA14_C(-0.4) * t46 - t99;
-    const iiwa14_real_t t101 = t3 * t92 - t2 * t93;
-    const iiwa14_real_t t102 = t101 + IIWA14_C(0.4) * t50;
+    const iiwa14_real_t t98 = t97 + IIWA14_C(0.42) * (t95 + t96); /* link j3: motion */
+    const iiwa14_real_t t99 = t13 * t94 - t26 * t98; /* link j4: motion */
+    const iiwa14_real_t t100 = IIWA14_C(-0.4) * t46 - t99; /* link j5: motion */
+    const iiwa14_real_t t101 = t3 * t92 - t2 * t93; /* link j3: motion */
+    const iiwa14_real_t t102 = t101 + IIWA14_C(0.4) * t50; /* link j5: motion */
     const iiwa14_real_t t103 = t33 * t100 + t34 * t102;
-    const iiwa14_real_t t104 = t28 * t28;
+    const iiwa14_real_t t104 = t28 * t28; /* link j4: motion */
     const iiwa14_real_t t105 = t29 * t29;
-    const iiwa14_real_t t106 = t104 + t105;
-    const iiwa14_real_t t107 = t26 * t94 + t13 * t98;
-    const iiwa14_real_t t108 = t107 + IIWA14_C(0.4) * t106;
-    const iiwa14_real_t t109 = t39 * t108 - t56 * t103;
-    const iiwa14_real_t t110 = t109 + IIWA14_C(0.126) * t70;
-    const iiwa14_real_t t111 = t33 * t102 - t34 * t100;
-    const iiwa14_real_t t112 = t111 + IIWA14_C(-0.126) * t62;
+    const iiwa14_real_t t106 = t104 + t105; /* link j5: motion */
+    const iiwa14_real_t t107 = t26 * t94 + t13 * t98; /* link j4: motion */
+    const iiwa14_real_t t108 = t107 + IIWA14_C(0.4) * t106; /* link j5: motion */
+    const iiwa14_real_t t109 = t39 * t108 - t56 * t103; /* link j6: motion */
+    const iiwa14_real_t t110 = t109 + IIWA14_C(0.126) * t70; /* link j7: motion */
+    const iiwa14_real_t t111 = t33 * t102 - t34 * t100; /* link j5: motion */
+    const iiwa14_real_t t112 = t111 + IIWA14_C(-0.126) * t62; /* link j7: motion */
     const iiwa14_real_t t113 = t71 * t110 + t63 * t112;
-    const iiwa14_real_t t114 = t39 * t103 + t56 * t108;
+    const iiwa14_real_t t114 = t39 * t103 + t56 * t108; /* link j6: motion */
     const iiwa14_real_t t115 = t68 * t68;
     const iiwa14_real_t t116 = t59 * t59;
-    const iiwa14_real_t t117 = t115 + t116;
+    const iiwa14_real_t t117 = t115 + t116; /* link j7: motion */
     const iiwa14_real_t t118 = t114 + IIWA14_C(0.126) * t117;
+    /* link j7: force and moment */
     const iiwa14_real_t t119 = (t89 - t90) * parameters[YZ7] + (t82 + t88 * parameters[XZ7])
         + (t113 * parameters[MZ7] - t118 * parameters[MY7]);
-    const iiwa14_real_t t120 = t75 + t76;
+    const iiwa14_real_t t120 = t75 + t76; /* link j7: columns */
+    /* link j7: force and moment */
     const iiwa14_real_t t121 = t79 * (parameters[ZZ7] - parameters[XX7]) + t80 * parameters[YY7]
         + t120 * parameters[XY7];
-    const iiwa14_real_t t122 = t86 + t87;
-    const iiwa14_real_t t123 = t78 * t78;
+    const iiwa14_real_t t122 = t86 + t87; /* link j7: columns */
+    const iiwa14_real_t t123 = t78 * t78; /* link j7: motion */
     const iiwa14_real_t t124 = t71 * t112 - t63 * t110;
+    /* link j7: force and moment */
     const iiwa14_real_t t125 = (t90 - t123) * parameters[XZ7] + (t121 + t122 * parameters[YZ7])
         + (t118 * parameters[MX7] - t124 * parameters[MZ7]);
     const iiwa14_real_t t126 = (t89 + t90) * parameters[MX7] + t122 * parameters[MY7] - t77 * parameters[MZ7];
     const iiwa14_real_t t127 = t124 * parameters[M7] + t126;
     const iiwa14_real_t t128 = (t123 + t90) * parameters[MY7] - t88 * parameters[MX7] + t72 * parameters[MZ7];
     const iiwa14_real_t t129 = t113 * parameters[M7] + t128;
-    const iiwa14_real_t t130 = t71 * t127 + t63 * t129;
-    const iiwa14_real_t t131 = t84 + t85;
+    const iiwa14_real_t t130 = t71 * t127 + t63 * t129; /* link j7: what it passes on */
+    const iiwa14_real_t t131 = t84 + t85; /* link j7: motion */
+    /* link j6: force and moment */
     const iiwa14_real_t t132 = t60 * (parameters[YY6] - parameters[ZZ6]) + t61 * parameters[XX6]
         + t131 * parameters[XY6];
-    const iiwa14_real_t t133 = t67 + t69;
-    const iiwa14_real_t t134 = t58 * t58;
+    const iiwa14_real_t t133 = t67 + t69; /* link j7: motion */
+    const iiwa14_real_t t134 = t58 * t58; /* link j6: motion */
+    /* link j6: force and moment */
     const iiwa14_real_t t135 = (t134 - t116) * parameters[YZ6] - (t132 - t133 * parameters[XZ6])
         - (t111 * parameters[MY6] + t114 * parameters[MZ6]);
+    /* link j7: what it passes on */
     const iiwa14_real_t t136 = t135 + (t63 * t119 - t71 * t125 + IIWA14_C(0.126) * t130);
+    /* link j7: force and moment */
     const iiwa14_real_t t137 = t87 * (parameters[XX7] - parameters[YY7]) + t86 * parameters[ZZ7]
         + t77 * parameters[YZ7];
     const iiwa14_real_t t138 = (t123 - t89) * parameters[XY7] + (t137 + t72 * parameters[XZ7])
         + (t124 * parameters[MY7] - t113 * parameters[MX7]);
+    /* link j6: force and moment */
     const iiwa14_real_t t139 = t85 * parameters[YY6] - t84 * (parameters[XX6] - parameters[ZZ6])
         + t62 * parameters[XY6];
     const iiwa14_real_t t140 = (t115 - t116) * parameters[XZ6] + (t139 - t70 * parameters[YZ6])
         - (t109 * parameters[MZ6] + t111 * parameters[MX6]);
-    const iiwa14_real_t t141 = t140 + t138;
-    const iiwa14_real_t t142 = t65 + t66;
+    const iiwa14_real_t t141 = t140 + t138; /* link j7: what it passes on */
+    const iiwa14_real_t t142 = t65 + t66; /* link j6: motion */
+    /* link j5: force and moment */
     const iiwa14_real_t t143 = t142 * parameters[XY5] - (t53 * (parameters[ZZ5] - parameters[YY5])
         + t54 * parameters[XX5]);
-    const iiwa14_real_t t144 = t32 + t37;
-    const iiwa14_real_t t145 = t36 * t36;
+    const iiwa14_real_t t144 = t32 + t37; /* link j6: motion */
+    const iiwa14_real_t t145 = t36 * t36; /* link j5: motion */
     const iiwa14_real_t t146 = t52 * t52;
+    /* link j5: force and moment */
     const iiwa14_real_t t147 = (t145 - t146) * parameters[YZ5] + (t143 + t144 * parameters[XZ5])
         + (t111 * parameters[MZ5] - t108 * parameters[MY5]);
-    const iiwa14_real_t t148 = t147 + (t56 * t136 + t39 * t141);
-    const iiwa14_real_t t149 = t71 * t129 - t63 * t127;
+    const iiwa14_real_t t148 = t147 + (t56 * t136 + t39 * t141); /* link j6: what it passes on */
+    const iiwa14_real_t t149 = t71 * t129 - t63 * t127; /* link j7: what it passes on */
+    /* link j6: force and moment */
     const iiwa14_real_t t150 = t67 * parameters[ZZ6] - t69 * (parameters[XX6] - parameters[YY6])
         - t83 * parameters[YZ6];
     const iiwa14_real_t t151 = (t115 - t134) * parameters[XY6] + (t150 - t57 * parameters[XZ6])
         + (t114 * parameters[MX6] - t109 * parameters[MY6]);
+    /* link j7: what it passes on */
     const iiwa14_real_t t152 = t151 + (t71 * t119 + t63 * t125 + IIWA14_C(0.126) * t149);
+    /* link j5: force and moment */
     const iiwa14_real_t t153 = t65 * (parameters[XX5] - parameters[ZZ5]) - t66 * parameters[YY5]
         + t55 * parameters[XY5];
-    const iiwa14_real_t t154 = t35 * t35;
+    const iiwa14_real_t t154 = t35 * t35; /* link j5: motion */
+    /* link j5: force and moment */
     const iiwa14_real_t t155 = (t154 - t146) * parameters[XZ5] + (t153 - t38 * parameters[YZ5])
         + (t103 * parameters[MZ5] - t108 * parameters[MX5]);
-    const iiwa14_real_t t156 = t155 - t152;
+    const iiwa14_real_t t156 = t155 - t152; /* link j6: what it passes on */
+    /* link j6: force and moment */
     const iiwa14_real_t t157 = (t134 + t116) * parameters[MX6] + t70 * parameters[MY6]
         + t83 * parameters[MZ6];
-    const iiwa14_real_t t158 = t109 * parameters[M6] - t157 + t149;
+    const iiwa14_real_t t158 = t109 * parameters[M6] - t157 + t149; /* link j7: what it passes on */
+    /* link j6: force and moment */
     const iiwa14_real_t t159 = t114 * parameters[M6] + (t133 * parameters[MX6] - t117 * parameters[MY6]
         + t57 * parameters[MZ6]);
+    /* link j7: force and moment */
     const iiwa14_real_t t160 = (t123 + t89) * parameters[MZ7] + (t81 * parameters[MX7]
         - t120 * parameters[MY7]);
-    const iiwa14_real_t t161 = t159 + (t118 * parameters[M7] + t160);
+    const iiwa14_real_t t161 = t159 + (t118 * parameters[M7] + t160); /* link j7: what it passes on */
+    /* link j5: force and moment */
     const iiwa14_real_t t162 = (t145 + t146) * parameters[MX5] + t38 * parameters[MY5]
         - t64 * parameters[MZ5];
+    /* link j6: what it passes on */
     const iiwa14_real_t t163 = t103 * parameters[M5] + t162 + (t39 * t161 - t56 * t158);
+    /* link j6: force and moment */
     const iiwa14_real_t t164 = (t115 + t134) * parameters[MZ6] + (t62 * parameters[MY6]
         - t131 * parameters[MX6]);
+    /* link j5: force and moment */
     const iiwa14_real_t t165 = (t154 + t146) * parameters[MY5] - t144 * parameters[MX5]
         + t51 * parameters[MZ5];
+    /* link j6: what it passes on */
     const iiwa14_real_t t166 = t111 * parameters[M5] + t165 + (t111 * parameters[M6] + t164 + t130);
-    const iiwa14_real_t t167 = t34 * t163 + t33 * t166;
-    const iiwa14_real_t t168 = t31 - t30;
+    const iiwa14_real_t t167 = t34 * t163 + t33 * t166; /* link j5: what it passes on */
+    const iiwa14_real_t t168 = t31 - t30; /* link j5: motion */
+    /* link j4: force and moment */
     const iiwa14_real_t t169 = t48 * (parameters[ZZ4] - parameters[YY4]) + t49 * parameters[XX4]
         + t168 * parameters[XY4];
-    const iiwa14_real_t t170 = t45 - t43;
-    const iiwa14_real_t t171 = t44 * t44;
+    const iiwa14_real_t t170 = t45 - t43; /* link j5: motion */
+    const iiwa14_real_t t171 = t44 * t44; /* link j4: motion */
+    /* link j4: force and moment */
     const iiwa14_real_t t172 = (t171 - t105) * parameters[YZ4] + (t169 + t170 * parameters[XZ4])
         + (t101 * parameters[MY4] + t107 * parameters[MZ4]);
+    /* link j5: what it passes on */
     const iiwa14_real_t t173 = t172 + (t33 * t148 + t34 * t156 + IIWA14_C(0.4) * t167);
+    /* link j5: force and moment */
     const iiwa14_real_t t174 = t32 * parameters[ZZ5] - t37 * (parameters[XX5] - parameters[YY5])
         + t64 * parameters[YZ5];
     const iiwa14_real_t t175 = (t154 - t145) * parameters[XY5] + (t174 + t51 * parameters[XZ5])
         + (t103 * parameters[MY5] - t111 * parameters[MX5]);
-    const iiwa14_real_t t176 = t175 + (t56 * t141 - t39 * t136);
+    const iiwa14_real_t t176 = t175 + (t56 * t141 - t39 * t136); /* link j6: what it passes on */
+    /* link j4: force and moment */
     const iiwa14_real_t t177 = t31 * parameters[YY4] - t30 * (parameters[ZZ4] - parameters[XX4])
         + t50 * parameters[XY4];
     const iiwa14_real_t t178 = (t105 - t104) * parameters[XZ4] + (t177 - t46 * parameters[YZ4])
         + (t99 * parameters[MZ4] - t101 * parameters[MX4]);
-    const iiwa14_real_t t179 = t178 + t176;
+    const iiwa14_real_t t179 = t178 + t176; /* link j5: what it passes on */
+    /* link j3: force and moment */
     const iiwa14_real_t t180 = t23 * (parameters[YY3] - parameters[ZZ3]) - t24 * parameters[XX3] - (t41
         + t42) * parameters[XY3];
-    const iiwa14_real_t t181 = t11 - t6;
-    const iiwa14_real_t t182 = t5 * t5;
+    const iiwa14_real_t t181 = t11 - t6; /* link j4: motion */
+    const iiwa14_real_t t182 = t5 * t5; /* link j3: motion */
     const iiwa14_real_t t183 = t22 * t22;
+    /* link j3: force and moment */
     const iiwa14_real_t t184 = (t182 - t183) * parameters[YZ3] - (t180 - t181 * parameters[XZ3])
         + (t101 * parameters[MZ3] - t98 * parameters[MY3]);
-    const iiwa14_real_t t185 = t184 + (t13 * t173 - t26 * t179);
-    const iiwa14_real_t t186 = t34 * t166 - t33 * t163;
+    const iiwa14_real_t t185 = t184 + (t13 * t173 - t26 * t179); /* link j4: what it passes on */
+    const iiwa14_real_t t186 = t34 * t166 - t33 * t163; /* link j5: what it passes on */
+    /* link j4: force and moment */
     const iiwa14_real_t t187 = t43 * parameters[ZZ4] - t45 * (parameters[YY4] - parameters[XX4])
         - t27 * parameters[YZ4];
     const iiwa14_real_t t188 = (t171 - t104) * parameters[XY4] + (t187 - t47 * parameters[XZ4])
         + (t107 * parameters[MX4] + t99 * parameters[MY4]);
+    /* link j5: what it passes on */
     const iiwa14_real_t t189 = t188 + (t34 * t148 - t33 * t156 + IIWA14_C(0.4) * t186);
+    /* link j3: force and moment */
     const iiwa14_real_t t190 = t41 * (parameters[ZZ3] - parameters[XX3]) + t42 * parameters[YY3]
         + t25 * parameters[XY3];
-    const iiwa14_real_t t191 = t4 * t4;
+    const iiwa14_real_t t191 = t4 * t4; /* link j3: motion */
+    /* link j3: force and moment */
     const iiwa14_real_t t192 = (t183 - t191) * parameters[XZ3] + (t190 + t12 * parameters[YZ3])
         + (t98 * parameters[MX3] + t94 * parameters[MZ3]);
-    const iiwa14_real_t t193 = t192 + t189;
+    const iiwa14_real_t t193 = t192 + t189; /* link j4: what it passes on */
+    /* link j4: force and moment */
     const iiwa14_real_t t194 = t46 * parameters[MY4] - (t171 + t105) * parameters[MX4]
         + t27 * parameters[MZ4];
+    /* link j5: force and moment */
     const iiwa14_real_t t195 = (t154 + t145) * parameters[MZ5] + (t142 * parameters[MX5]
         + t55 * parameters[MY5]);
+    /* link j6: what it passes on */
     const iiwa14_real_t t196 = t108 * parameters[M5] + t195 + (t39 * t158 + t56 * t161);
+    /* link j4: force and moment */
     const iiwa14_real_t t197 = t107 * parameters[M4] + (t106 * parameters[MY4] - t170 * parameters[MX4]
         + t47 * parameters[MZ4]);
+    /* link j4: what it passes on */
     const iiwa14_real_t t198 = t13 * (t99 * parameters[M4] + t194 + t186) + t26 * (t197 + t196);
+    /* link j3: force and moment */
     const iiwa14_real_t t199 = t40 * parameters[MZ3] - ((t182 + t183) * parameters[MX3]
         + t12 * parameters[MY3]);
-    const iiwa14_real_t t200 = t94 * parameters[M3] + t199 + t198;
+    const iiwa14_real_t t200 = t94 * parameters[M3] + t199 + t198; /* link j4: what it passes on */
+    /* link j4: force and moment */
     const iiwa14_real_t t201 = (t104 + t171) * parameters[MZ4] + (t168 * parameters[MX4]
         - t50 * parameters[MY4]);
+    /* link j3: force and moment */
     const iiwa14_real_t t202 = (t191 + t183) * parameters[MY3] - t181 * parameters[MX3]
         + t21 * parameters[MZ3];
+    /* link j4: what it passes on */
     const iiwa14_real_t t203 = t201 - t101 * parameters[M4] - t167 - (t101 * parameters[M3] + t202);
+    /* link j3: what it passes on */
     const iiwa14_real_t t204 = t3 * t193 - t2 * t185 + IIWA14_C(0.42) * (t3 * t200 + t2 * t203);
+    /* link j2: force and moment */
     const iiwa14_real_t t205 = t18 * (parameters[ZZ2] - parameters[YY2]) + t19 * parameters[XX2] + (t10
         - t9) * parameters[XY2];
-    const iiwa14_real_t t206 = t14 * t14;
+    const iiwa14_real_t t206 = t14 * t14; /* link j2: motion */
+    /* link j2: force and moment */
     const iiwa14_real_t t207 = (t96 - t206) * parameters[YZ2] + (t205 - (ddq[1] + t15) * parameters[XZ2]);
+    /* link j3: force and moment */
     const iiwa14_real_t t208 = t6 * (parameters[XX3] - parameters[YY3]) + t11 * parameters[ZZ3]
         + t40 * parameters[YZ3];
     const iiwa14_real_t t209 = (t191 - t182) * parameters[XY3] + (t208 + t21 * parameters[XZ3])
         - (t101 * parameters[MX3] + t94 * parameters[MY3]);
-    const iiwa14_real_t t210 = t209 + (t26 * t173 + t13 * t179);
+    const iiwa14_real_t t210 = t209 + (t26 * t173 + t13 * t179); /* link j4: what it passes on */
+    /* link j2: force and moment */
     const iiwa14_real_t t211 = t9 * (parameters[XX2] - parameters[ZZ2]) + t10 * parameters[YY2]
         + t20 * parameters[XY2];
     const iiwa14_real_t t212 = t91 * parameters[MZ2] + ((t95 - t96) * parameters[XZ2] + (t211
         - t16 * parameters[YZ2]));
+    /* link j2: what it passes on */
     const iiwa14_real_t t213 = t0 * (t97 * parameters[MZ2] + t207 + t204) + t7 * (t212 + t210);
-    const iiwa14_real_t t214 = iiwa14_sign(dq[0]);
+    const iiwa14_real_t t214 = iiwa14_sign(dq[0]); /* joint j1: coulomb_friction */
     const iiwa14_real_t t215 = IIWA14_C(160.0) * dq[0] * parameters[FV1] + t214 * parameters[FC1]
         + IIWA14_C(160.0) * ddq[0] * parameters[IA1];
     out[0] = IIWA14_C(10.0) * t215 + IIWA14_C(0.0625) * (ddq[0] * parameters[ZZ1] + t213);
+    /* link j3: what it passes on */
     const iiwa14_real_t t216 = t3 * t185 + t2 * t193 + IIWA14_C(0.42) * (t2 * t200 - t3 * t203);
+    /* link j2: force and moment */
     const iiwa14_real_t t217 = t15 * (parameters[YY2] - parameters[XX2]) + ddq[1] * parameters[ZZ2]
         - t8 * parameters[YZ2];
     const iiwa14_real_t t218 = t97 * parameters[MX2] + t91 * parameters[MY2] + ((t95 - t206) * parameters[XY2]
         + (t217 - t17 * parameters[XZ2]));
-    const iiwa14_real_t t219 = iiwa14_sign(dq[1]);
+    const iiwa14_real_t t219 = iiwa14_sign(dq[1]); /* joint j2: coulomb_friction */
     const iiwa14_real_t t220 = IIWA14_C(160.0) * dq[1] * parameters[FV2] + t219 * parameters[FC2]
         + IIWA14_C(160.0) * ddq[1] * parameters[IA2];
     out[1] = IIWA14_C(10.0) * t220 + IIWA14_C(0.0625) * (t218 + t216);
-    const iiwa14_real_t t221 = iiwa14_sign(dq[2]);
+    const iiwa14_real_t t221 = iiwa14_sign(dq[2]); /* joint j3: coulomb_friction */
     const iiwa14_real_t t222 = IIWA14_C(160.0) * dq[2] * parameters[FV3] + t221 * parameters[FC3]
         + IIWA14_C(160.0) * ddq[2] * parameters[IA3];
     out[2] = IIWA14_C(10.0) * t222 + IIWA14_C(0.0625) * t210;
-    const iiwa14_real_t t223 = iiwa14_sign(dq[3]);
+    const iiwa14_real_t t223 = iiwa14_sign(dq[3]); /* joint j4: coulomb_friction */
     const iiwa14_real_t t224 = IIWA14_C(160.0) * dq[3] * parameters[FV4] + t223 * parameters[FC4]
         + IIWA14_C(160.0) * ddq[3] * parameters[IA4];
     out[3] = IIWA14_C(10.0) * t224 + IIWA14_C(-0.0625) * t189;
-    const iiwa14_real_t t225 = iiwa14_sign(dq[4]);
+    const iiwa14_real_t t225 = iiwa14_sign(dq[4]); /* joint j5: coulomb_friction */
     const iiwa14_real_t t226 = IIWA14_C(1.0e2) * dq[4] * parameters[FV5] + t225 * parameters[FC5]
         + IIWA14_C(1.0e2) * ddq[4] * parameters[IA5];
     out[4] = IIWA14_C(12.5) * t226 + IIWA14_C(0.125) * t176;
-    const iiwa14_real_t t227 = iiwa14_sign(dq[5]);
+    const iiwa14_real_t t227 = iiwa14_sign(dq[5]); /* joint j6: coulomb_friction */
     const iiwa14_real_t t228 = IIWA14_C(160.0) * dq[5] * parameters[FV6] + t227 * parameters[FC6]
         + IIWA14_C(160.0) * ddq[5] * parameters[IA6];
     out[5] = IIWA14_C(20.0) * t228 + IIWA14_C(0.125) * t152;
-    const iiwa14_real_t t229 = iiwa14_sign(dq[6]);
+    const iiwa14_real_t t229 = iiwa14_sign(dq[6]); /* joint j7: coulomb_friction */
     const iiwa14_real_t t230 = IIWA14_C(160.0) * dq[6] * parameters[FV7] + t229 * parameters[FC7]
         + IIWA14_C(160.0) * ddq[6] * parameters[IA7];
     out[6] = IIWA14_C(20.0) * t230 + IIWA14_C(0.125) * t138;

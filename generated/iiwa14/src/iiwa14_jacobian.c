@@ -23,15 +23,15 @@
  */
 #include "iiwa14_private.h"
 
-#if IIWA14_GENERATION != 0x27C72E36UL
+#if IIWA14_GENERATION != 0x1E31C9F2UL
 #error "iiwa14.h and iiwa14_jacobian.c are of different generations: generate the arm again"
 #endif
 
-int iiwa14_jacobian(
+iiwa14_status_t iiwa14_jacobian(
     const iiwa14_real_t q[IIWA14_N_JOINTS],
     iiwa14_real_t out[6 * IIWA14_N_JOINTS])
 {
-    int status = IIWA14_STATUS_OK;
+    iiwa14_status_t status = IIWA14_STATUS_OK;
 
     if (!iiwa14_within_joints(q, IIWA14_C(1.0e8))) {
         status |= IIWA14_STATUS_INPUT;
@@ -53,25 +53,26 @@ int iiwa14_jacobian(
     IIWA14_SINCOS(q[4], &t14, &t12);
     iiwa14_real_t t15, t17;
     IIWA14_SINCOS(q[5], &t15, &t17);
-    const iiwa14_real_t t2 = t0 * t1;
-    const iiwa14_real_t t6 = t3 * t2 + t4 * t5;
-    const iiwa14_real_t t9 = t0 * t8;
-    const iiwa14_real_t t11 = t7 * t6 + t10 * t9;
-    const iiwa14_real_t t13 = t5 * t2 - t4 * t3;
-    const iiwa14_real_t t16 = t7 * t9 - t10 * t6;
-    const iiwa14_real_t t18 = t15 * (t12 * t11 - t14 * t13) + t17 * t16;
-    const iiwa14_real_t t19 = IIWA14_C(-0.126) * t18;
-    const iiwa14_real_t t20 = IIWA14_C(-0.42) * t9;
-    const iiwa14_real_t t21 = t20 + IIWA14_C(-0.4) * t16 + t19;
+    const iiwa14_real_t t2 = t0 * t1; /* link j2: pose */
+    const iiwa14_real_t t6 = t3 * t2 + t4 * t5; /* link j3: pose */
+    const iiwa14_real_t t9 = t0 * t8; /* link j2: pose */
+    const iiwa14_real_t t11 = t7 * t6 + t10 * t9; /* link j4: pose */
+    const iiwa14_real_t t13 = t5 * t2 - t4 * t3; /* link j3: pose */
+    const iiwa14_real_t t16 = t7 * t9 - t10 * t6; /* link j4: pose */
+    const iiwa14_real_t t18 = t15 * (t12 * t11 - t14 * t13) + t17 * t16; /* link j6: pose */
+    const iiwa14_real_t t19 = IIWA14_C(-0.126) * t18; /* link j7: pose */
+    const iiwa14_real_t t20 = IIWA14_C(-0.42) * t9; /* link j3: pose */
+    const iiwa14_real_t t21 = t20 + IIWA14_C(-0.4) * t16 + t19; /* link j7: pose */
     out[0] = t21;
-    const iiwa14_real_t t22 = t8 * t3;
-    const iiwa14_real_t t23 = t7 * t22 - t1 * t10;
-    const iiwa14_real_t t24 = t8 * t5;
-    const iiwa14_real_t t25 = t10 * t22 + t1 * t7;
+    const iiwa14_real_t t22 = t8 * t3; /* link j3: velocities by those of the joints */
+    const iiwa14_real_t t23 = t7 * t22 - t1 * t10; /* link j4: velocities by those of the joints */
+    const iiwa14_real_t t24 = t8 * t5; /* link j3: velocities by those of the joints */
+    const iiwa14_real_t t25 = t10 * t22 + t1 * t7; /* link j4: velocities by those of the joints */
+    /* link j6: velocities by those of the joints */
     const iiwa14_real_t t26 = t15 * (t14 * t24 - t12 * t23) + t17 * t25;
-    const iiwa14_real_t t27 = IIWA14_C(0.126) * t26;
-    const iiwa14_real_t t28 = IIWA14_C(0.42) * t1 + IIWA14_C(0.36);
-    const iiwa14_real_t t29 = t28 + IIWA14_C(0.4) * t25 + t27;
+    const iiwa14_real_t t27 = IIWA14_C(0.126) * t26; /* link j7: pose */
+    const iiwa14_real_t t28 = IIWA14_C(0.42) * t1 + IIWA14_C(0.36); /* link j3: pose */
+    const iiwa14_real_t t29 = t28 + IIWA14_C(0.4) * t25 + t27; /* link j7: pose */
     const iiwa14_real_t t30 = t29 - IIWA14_C(0.36);
     out[1] = t4 * t30;
     const iiwa14_real_t t31 = t28 - t29;
@@ -79,26 +80,26 @@ int iiwa14_jacobian(
     out[2] = -(t9 * t31 + t1 * t32);
     out[3] = t24 * t32 - t13 * t31;
     out[4] = t16 * t27 + t25 * t19;
-    const iiwa14_real_t t33 = t14 * t11 + t12 * t13;
-    const iiwa14_real_t t34 = t14 * t23 + t12 * t24;
+    const iiwa14_real_t t33 = t14 * t11 + t12 * t13; /* link j5: pose */
+    const iiwa14_real_t t34 = t14 * t23 + t12 * t24; /* link j5: velocities by those of the joints */
     out[5] = t34 * t19 - t33 * t27;
-    const iiwa14_real_t t35 = t4 * t1;
-    const iiwa14_real_t t36 = t0 * t5 - t3 * t35;
-    const iiwa14_real_t t37 = t4 * t8;
-    const iiwa14_real_t t38 = t7 * t36 - t10 * t37;
-    const iiwa14_real_t t39 = t5 * t35 + t0 * t3;
-    const iiwa14_real_t t40 = t10 * t36 + t7 * t37;
-    const iiwa14_real_t t41 = t17 * t40 - t15 * (t12 * t38 + t14 * t39);
-    const iiwa14_real_t t42 = IIWA14_C(0.126) * t41;
-    const iiwa14_real_t t43 = IIWA14_C(0.42) * t37;
-    const iiwa14_real_t t44 = t43 + IIWA14_C(0.4) * t40 + t42;
+    const iiwa14_real_t t35 = t4 * t1; /* link j2: pose */
+    const iiwa14_real_t t36 = t0 * t5 - t3 * t35; /* link j3: pose */
+    const iiwa14_real_t t37 = t4 * t8; /* link j2: pose */
+    const iiwa14_real_t t38 = t7 * t36 - t10 * t37; /* link j4: pose */
+    const iiwa14_real_t t39 = t5 * t35 + t0 * t3; /* link j3: pose */
+    const iiwa14_real_t t40 = t10 * t36 + t7 * t37; /* link j4: pose */
+    const iiwa14_real_t t41 = t17 * t40 - t15 * (t12 * t38 + t14 * t39); /* link j6: pose */
+    const iiwa14_real_t t42 = IIWA14_C(0.126) * t41; /* link j7: pose */
+    const iiwa14_real_t t43 = IIWA14_C(0.42) * t37; /* link j3: pose */
+    const iiwa14_real_t t44 = t43 + IIWA14_C(0.4) * t40 + t42; /* link j7: pose */
     out[7] = t44;
     out[8] = t0 * t30;
     const iiwa14_real_t t45 = t43 - t44;
     out[9] = t37 * t31 - t1 * t45;
     out[10] = t24 * t45 + t39 * t31;
     out[11] = t25 * t42 - t40 * t27;
-    const iiwa14_real_t t46 = t14 * t38 - t12 * t39;
+    const iiwa14_real_t t46 = t14 * t38 - t12 * t39; /* link j5: pose */
     out[12] = t34 * t42 - t46 * t27;
     out[15] = t0 * t21 - t4 * t44;
     out[16] = t37 * t32 + t9 * t45;

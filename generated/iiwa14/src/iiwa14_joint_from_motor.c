@@ -27,11 +27,11 @@
  */
 #include "iiwa14_private.h"
 
-#if IIWA14_GENERATION != 0x27C72E36UL
+#if IIWA14_GENERATION != 0x1E31C9F2UL
 #error "iiwa14.h and iiwa14_joint_from_motor.c are of different generations: generate the arm again"
 #endif
 
-int iiwa14_joint_from_motor(
+iiwa14_status_t iiwa14_joint_from_motor(
     const iiwa14_real_t q_m[IIWA14_N_JOINTS],
     const iiwa14_real_t dq_m[IIWA14_N_JOINTS],
     const iiwa14_real_t ddq_m[IIWA14_N_JOINTS],
@@ -39,7 +39,7 @@ int iiwa14_joint_from_motor(
     iiwa14_real_t dq[IIWA14_N_JOINTS],
     iiwa14_real_t ddq[IIWA14_N_JOINTS])
 {
-    int status = IIWA14_STATUS_OK;
+    iiwa14_status_t status = IIWA14_STATUS_OK;
 
     if (!iiwa14_within_joints(q_m, IIWA14_C(1.0e18))
         || !iiwa14_within_joints(dq_m, IIWA14_C(1.0e18))

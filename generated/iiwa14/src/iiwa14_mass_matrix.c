@@ -89,11 +89,11 @@
  */
 #include "iiwa14_private.h"
 
-#if IIWA14_GENERATION != 0x27C72E36UL
+#if IIWA14_GENERATION != 0x1E31C9F2UL
 #error "iiwa14.h and iiwa14_mass_matrix.c are of different generations: generate the arm again"
 #endif
 
-int iiwa14_mass_matrix(
+iiwa14_status_t iiwa14_mass_matrix(
     const iiwa14_real_t q[IIWA14_N_JOINTS],
     const iiwa14_real_t parameters[IIWA14_N_PARAMETERS],
     iiwa14_real_t out[IIWA14_N_JOINTS * IIWA14_N_JOINTS])
@@ -102,7 +102,7 @@ int iiwa14_mass_matrix(
         XZ4, YZ4, ZZ4R, MX4, MY4R, XX5R, XY5, XZ5, YZ5, ZZ5R, MX5, MY5R, XX6R, XY6, XZ6, YZ6, ZZ6R, MX6, MY6R,
         XX7R, XY7, XZ7R, YZ7R, ZZ7, MX7, MY7, FV1, FC1, FV2, FC2, FV3, FC3, IA3, FV4, FC4, IA4, FV5, FC5, IA5,
         FV6, FC6, IA6, FV7, FC7, IA7 };
-    int status = IIWA14_STATUS_OK;
+    iiwa14_status_t status = IIWA14_STATUS_OK;
 
     if (!iiwa14_within_joints(q, IIWA14_C(1.0e8))
         || !IIWA14_PARAMETERS_USABLE(iiwa14_within(parameters, 62, IIWA14_C(1.0e18)))) {
@@ -125,79 +125,95 @@ int iiwa14_mass_matrix(
     IIWA14_SINCOS(q[5], &t8, &t5);
     iiwa14_real_t t1, t0;
     IIWA14_SINCOS(q[6], &t1, &t0);
+    /* link j7: inertia of it and all beyond */
     const iiwa14_real_t t2 = parameters[XY7] * (IIWA14_C(2.0) * t1) - t0 * parameters[XX7R];
     const iiwa14_real_t t3 = t0 * t2;
     const iiwa14_real_t t4 = parameters[XX6R] - t3;
+    /* link j7: column of the mass matrix */
     const iiwa14_real_t t6 = t1 * parameters[YZ7R] - t0 * parameters[XZ7R];
-    const iiwa14_real_t t7 = parameters[XY6] + t6;
+    const iiwa14_real_t t7 = parameters[XY6] + t6; /* link j7: inertia of it and all beyond */
+    /* link j6: inertia of it and all beyond */
     const iiwa14_real_t t9 = t5 * (parameters[ZZ7] - t4) + t7 * (IIWA14_C(2.0) * t8);
     const iiwa14_real_t t10 = t5 * t9;
     const iiwa14_real_t t11 = parameters[XX5R] + (parameters[ZZ7] - t10);
+    /* link j7: inertia of it and all beyond */
     const iiwa14_real_t t12 = parameters[ZZ6R] + (parameters[XX7R] + t3);
     const iiwa14_real_t t14 = t1 * t2 - parameters[XY7] - parameters[XZ6];
+    /* link j7: column of the mass matrix */
     const iiwa14_real_t t15 = t1 * parameters[XZ7R] + t0 * parameters[YZ7R];
-    const iiwa14_real_t t16 = parameters[YZ6] - t15;
-    const iiwa14_real_t t17 = t5 * t14 + t8 * t16;
-    const iiwa14_real_t t18 = t17 - parameters[XY5];
+    const iiwa14_real_t t16 = parameters[YZ6] - t15; /* link j7: inertia of it and all beyond */
+    const iiwa14_real_t t17 = t5 * t14 + t8 * t16; /* link j6: column of the mass matrix */
+    const iiwa14_real_t t18 = t17 - parameters[XY5]; /* link j6: inertia of it and all beyond */
+    /* link j5: inertia of it and all beyond */
     const iiwa14_real_t t20 = t13 * (t12 - t11) - t18 * (IIWA14_C(2.0) * t19);
     const iiwa14_real_t t21 = t13 * t20;
+    /* link j7: column of the mass matrix */
     const iiwa14_real_t t22 = t1 * parameters[MY7] - t0 * parameters[MX7];
-    const iiwa14_real_t t23 = parameters[MX6] - t22;
-    const iiwa14_real_t t24 = t5 * parameters[MY6R] + t8 * t23;
-    const iiwa14_real_t t25 = IIWA14_C(-0.8) * t24;
+    const iiwa14_real_t t23 = parameters[MX6] - t22; /* link j7: inertia of it and all beyond */
+    const iiwa14_real_t t24 = t5 * parameters[MY6R] + t8 * t23; /* link j6: column of the mass matrix */
+    const iiwa14_real_t t25 = IIWA14_C(-0.8) * t24; /* link j5: inertia of it and all beyond */
     const iiwa14_real_t t26 = parameters[XX4R] + (t12 - t21 + t25);
-    const iiwa14_real_t t27 = parameters[ZZ5R] + (t4 + t10);
+    const iiwa14_real_t t27 = parameters[ZZ5R] + (t4 + t10); /* link j6: inertia of it and all beyond */
     const iiwa14_real_t t29 = parameters[XZ5] - (t7 - t8 * t9);
-    const iiwa14_real_t t30 = t8 * t14 - t5 * t16;
-    const iiwa14_real_t t31 = parameters[YZ5] + t30;
+    const iiwa14_real_t t30 = t8 * t14 - t5 * t16; /* link j6: column of the mass matrix */
+    const iiwa14_real_t t31 = parameters[YZ5] + t30; /* link j6: inertia of it and all beyond */
+    /* link j7: column of the mass matrix */
     const iiwa14_real_t t32 = t0 * parameters[MY7] + t1 * parameters[MX7];
-    const iiwa14_real_t t33 = parameters[MY5R] + t32;
-    const iiwa14_real_t t34 = t8 * parameters[MY6R] - t5 * t23;
-    const iiwa14_real_t t35 = t34 - parameters[MX5];
-    const iiwa14_real_t t36 = t19 * t33 + t13 * t35;
+    const iiwa14_real_t t33 = parameters[MY5R] + t32; /* link j6: inertia of it and all beyond */
+    const iiwa14_real_t t34 = t8 * parameters[MY6R] - t5 * t23; /* link j6: column of the mass matrix */
+    const iiwa14_real_t t35 = t34 - parameters[MX5]; /* link j6: inertia of it and all beyond */
+    const iiwa14_real_t t36 = t19 * t33 + t13 * t35; /* link j5: column of the mass matrix */
     const iiwa14_real_t t37 = t13 * t29 - t19 * t31 + IIWA14_C(0.4) * t36;
-    const iiwa14_real_t t38 = parameters[XY4] + t37;
+    const iiwa14_real_t t38 = parameters[XY4] + t37; /* link j5: inertia of it and all beyond */
+    /* link j4: inertia of it and all beyond */
     const iiwa14_real_t t40 = t28 * (t27 - t26) + t38 * (IIWA14_C(2.0) * t39);
     const iiwa14_real_t t41 = t28 * t40;
     const iiwa14_real_t t42 = parameters[XX3R] + (t27 - t41);
+    /* link j5: inertia of it and all beyond */
     const iiwa14_real_t t43 = parameters[ZZ4R] + (t11 + t21 + t25);
     const iiwa14_real_t t45 = parameters[XZ4] + (t18 + t19 * t20);
-    const iiwa14_real_t t46 = t19 * t35 - t13 * t33;
+    const iiwa14_real_t t46 = t19 * t35 - t13 * t33; /* link j5: column of the mass matrix */
     const iiwa14_real_t t47 = IIWA14_C(-0.4) * t46 - (t19 * t29 + t13 * t31);
-    const iiwa14_real_t t48 = parameters[YZ4] + t47;
-    const iiwa14_real_t t49 = t28 * t45 - t39 * t48;
-    const iiwa14_real_t t50 = t49 - parameters[XY3];
+    const iiwa14_real_t t48 = parameters[YZ4] + t47; /* link j5: inertia of it and all beyond */
+    const iiwa14_real_t t49 = t28 * t45 - t39 * t48; /* link j4: column of the mass matrix */
+    const iiwa14_real_t t50 = t49 - parameters[XY3]; /* link j4: inertia of it and all beyond */
+    /* link j3: inertia of it and all beyond */
     const iiwa14_real_t t52 = t44 * (t43 - t42) - t50 * (IIWA14_C(2.0) * t51);
     const iiwa14_real_t t53 = t44 * t52;
-    const iiwa14_real_t t54 = t36 - parameters[MX4];
+    const iiwa14_real_t t54 = t36 - parameters[MX4]; /* link j5: inertia of it and all beyond */
     const iiwa14_real_t t55 = t24 - parameters[MY4R];
-    const iiwa14_real_t t56 = t28 * t55 + t39 * t54;
-    const iiwa14_real_t t57 = IIWA14_C(-0.84) * t56;
+    const iiwa14_real_t t56 = t28 * t55 + t39 * t54; /* link j4: column of the mass matrix */
+    const iiwa14_real_t t57 = IIWA14_C(-0.84) * t56; /* link j3: inertia of it and all beyond */
     const iiwa14_real_t t58 = parameters[XX2R] + (t43 - t53 + t57);
-    const iiwa14_real_t t59 = parameters[ZZ3R] + (t26 + t41);
+    const iiwa14_real_t t59 = parameters[ZZ3R] + (t26 + t41); /* link j4: inertia of it and all beyond */
     const iiwa14_real_t t61 = parameters[XZ3] + (t38 - t39 * t40);
-    const iiwa14_real_t t62 = t39 * t45 + t28 * t48;
-    const iiwa14_real_t t63 = parameters[YZ3] - t62;
+    const iiwa14_real_t t62 = t39 * t45 + t28 * t48; /* link j4: column of the mass matrix */
+    const iiwa14_real_t t63 = parameters[YZ3] - t62; /* link j4: inertia of it and all beyond */
     const iiwa14_real_t t64 = t46 - parameters[MY3R];
     const iiwa14_real_t t65 = parameters[MX3] - (t28 * t54 - t39 * t55);
+    /* link j3: column of the mass matrix */
     const iiwa14_real_t t66 = t51 * t63 - t44 * t61 + IIWA14_C(0.42) * (t51 * t64 + t44 * t65);
+    /* link j2: inertia of it and all beyond */
     const iiwa14_real_t t68 = t60 * (t59 - t58) + (parameters[XY2] + t66) * (IIWA14_C(2.0) * t67);
     out[0] = parameters[ZZ1R] + (t58 + t60 * t68);
+    /* link j3: column of the mass matrix */
     const iiwa14_real_t t69 = t51 * t61 + t44 * t63 + IIWA14_C(0.42) * (t44 * t64 - t51 * t65);
+    /* link j2: column of the mass matrix */
     const iiwa14_real_t t70 = t67 * (t50 + t51 * t52 - parameters[XZ2]) + t60 * (t69 - parameters[YZ2]);
     out[1] = t70;
-    const iiwa14_real_t t71 = t67 * t66 + t60 * t59;
+    const iiwa14_real_t t71 = t67 * t66 + t60 * t59; /* link j3: column of the mass matrix */
     out[2] = t71;
+    /* link j4: column of the mass matrix */
     const iiwa14_real_t t72 = IIWA14_C(0.42) * (t51 * t56) - (t44 * t49 + t51 * t43);
     const iiwa14_real_t t73 = t67 * t72 + t60 * t62;
     out[3] = t73;
-    const iiwa14_real_t t74 = t28 * t37 - t39 * t27;
+    const iiwa14_real_t t74 = t28 * t37 - t39 * t27; /* link j5: column of the mass matrix */
     const iiwa14_real_t t75 = t28 * t46;
     const iiwa14_real_t t76 = IIWA14_C(0.42) * (t51 * t75 - t44 * t36) - (t44 * t74 + t51 * t47);
     const iiwa14_real_t t77 = t39 * t37 + t28 * t27;
     const iiwa14_real_t t78 = t67 * t76 + t60 * t77;
     out[4] = t78;
-    const iiwa14_real_t t79 = t19 * t24;
+    const iiwa14_real_t t79 = t19 * t24; /* link j6: column of the mass matrix */
     const iiwa14_real_t t80 = IIWA14_C(0.4) * t79 - (t13 * t17 + t19 * t12);
     const iiwa14_real_t t81 = t28 * t80 - t39 * t30;
     const iiwa14_real_t t82 = t13 * t24;
@@ -207,7 +223,7 @@ int iiwa14_mass_matrix(
     const iiwa14_real_t t86 = t39 * t80 + t28 * t30;
     const iiwa14_real_t t87 = t67 * t85 + t60 * t86;
     out[5] = t87;
-    const iiwa14_real_t t88 = t8 * parameters[ZZ7] - t5 * t6;
+    const iiwa14_real_t t88 = t8 * parameters[ZZ7] - t5 * t6; /* link j7: column of the mass matrix */
     const iiwa14_real_t t89 = t5 * t32;
     const iiwa14_real_t t90 = t19 * t89 + t13 * t22;
     const iiwa14_real_t t91 = t13 * t88 - t19 * t15 + IIWA14_C(0.4) * t90;
@@ -223,12 +239,16 @@ int iiwa14_mass_matrix(
     out[7] = t70;
     out[8] = parameters[ZZ2R] + (t42 + t53 + t57);
     out[9] = t69;
+    /* link j4: column of the mass matrix */
     const iiwa14_real_t t100 = t51 * t49 - t44 * t43 + IIWA14_C(0.42) * (t44 * t56);
     out[10] = t100;
+    /* link j5: column of the mass matrix */
     const iiwa14_real_t t101 = t51 * t74 - t44 * t47 + IIWA14_C(0.42) * (t44 * t75 + t51 * t36);
     out[11] = t101;
+    /* link j6: column of the mass matrix */
     const iiwa14_real_t t102 = t51 * t81 - t44 * t83 + IIWA14_C(0.42) * (t51 * t79 - t44 * t84);
     out[12] = t102;
+    /* link j7: column of the mass matrix */
     const iiwa14_real_t t103 = t51 * t93 - t44 * t95 + IIWA14_C(0.42) * (t51 * t90 - t44 * t96);
     out[13] = t103;
     out[14] = t71;

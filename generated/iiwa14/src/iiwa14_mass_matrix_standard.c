@@ -118,11 +118,11 @@
  */
 #include "iiwa14_private.h"
 
-#if IIWA14_GENERATION != 0x27C72E36UL
+#if IIWA14_GENERATION != 0x1E31C9F2UL
 #error "iiwa14.h and iiwa14_mass_matrix_standard.c are of different generations: generate the arm again"
 #endif
 
-int iiwa14_mass_matrix_standard(
+iiwa14_status_t iiwa14_mass_matrix_standard(
     const iiwa14_real_t q[IIWA14_N_JOINTS],
     const iiwa14_real_t parameters[IIWA14_N_STANDARD_PARAMETERS],
     iiwa14_real_t out[IIWA14_N_JOINTS * IIWA14_N_JOINTS])
@@ -132,7 +132,7 @@ int iiwa14_mass_matrix_standard(
         XX5, XY5, XZ5, YY5, YZ5, ZZ5, MX5, MY5, MZ5, M5, XX6, XY6, XZ6, YY6, YZ6, ZZ6, MX6, MY6, MZ6, M6, XX7,
         XY7, XZ7, YY7, YZ7, ZZ7, MX7, MY7, MZ7, M7, FV1, FC1, IA1, FV2, FC2, IA2, FV3, FC3, IA3, FV4, FC4,
         IA4, FV5, FC5, IA5, FV6, FC6, IA6, FV7, FC7, IA7 };
-    int status = IIWA14_STATUS_OK;
+    iiwa14_status_t status = IIWA14_STATUS_OK;
 
     if (!iiwa14_within_joints(q, IIWA14_C(1.0e8))
         || !IIWA14_PARAMETERS_USABLE(iiwa14_within(parameters, 91, IIWA14_C(1.0e18)))) {
@@ -155,6 +155,7 @@ int iiwa14_mass_matrix_standard(
     IIWA14_SINCOS(q[5], &t12, &t8);
     iiwa14_real_t t1, t0;
     IIWA14_SINCOS(q[6], &t1, &t0);
+    /* link j7: inertia of it and all beyond */
     const iiwa14_real_t t2 = t0 * (parameters[YY7] - parameters[XX7])
         + parameters[XY7] * (IIWA14_C(2.0) * t1);
     const iiwa14_real_t t3 = t0 * t2;
@@ -162,86 +163,99 @@ int iiwa14_mass_matrix_standard(
     const iiwa14_real_t t5 = IIWA14_C(0.126) * (t4 + IIWA14_C(2.0) * parameters[MZ7]);
     const iiwa14_real_t t6 = parameters[XX6] + (parameters[YY7] - t3 + t5);
     const iiwa14_real_t t7 = parameters[YY6] + parameters[ZZ7];
+    /* link j7: column of the mass matrix */
     const iiwa14_real_t t9 = t1 * parameters[MY7] - t0 * parameters[MX7];
     const iiwa14_real_t t10 = t1 * parameters[YZ7] - t0 * parameters[XZ7] + IIWA14_C(-0.126) * t9;
-    const iiwa14_real_t t11 = parameters[XY6] + t10;
+    const iiwa14_real_t t11 = parameters[XY6] + t10; /* link j7: inertia of it and all beyond */
+    /* link j6: inertia of it and all beyond */
     const iiwa14_real_t t13 = t8 * (t7 - t6) + t11 * (IIWA14_C(2.0) * t12);
     const iiwa14_real_t t14 = t8 * t13;
     const iiwa14_real_t t15 = parameters[XX5] + (t7 - t14);
+    /* link j7: inertia of it and all beyond */
     const iiwa14_real_t t16 = parameters[ZZ6] + (parameters[XX7] + t3 + t5);
-    const iiwa14_real_t t17 = parameters[YY5] + t16;
+    const iiwa14_real_t t17 = parameters[YY5] + t16; /* link j6: inertia of it and all beyond */
+    /* link j7: column of the mass matrix */
     const iiwa14_real_t t19 = t0 * parameters[MY7] + t1 * parameters[MX7];
     const iiwa14_real_t t20 = t1 * parameters[XZ7] + t0 * parameters[YZ7] + IIWA14_C(-0.126) * t19;
-    const iiwa14_real_t t21 = parameters[YZ6] - t20;
+    const iiwa14_real_t t21 = parameters[YZ6] - t20; /* link j7: inertia of it and all beyond */
     const iiwa14_real_t t22 = t1 * t2 - parameters[XY7] - parameters[XZ6];
-    const iiwa14_real_t t23 = t8 * t22 + t12 * t21;
-    const iiwa14_real_t t24 = t23 - parameters[XY5];
+    const iiwa14_real_t t23 = t8 * t22 + t12 * t21; /* link j6: column of the mass matrix */
+    const iiwa14_real_t t24 = t23 - parameters[XY5]; /* link j6: inertia of it and all beyond */
+    /* link j5: inertia of it and all beyond */
     const iiwa14_real_t t26 = t18 * (t17 - t15) - t24 * (IIWA14_C(2.0) * t25);
     const iiwa14_real_t t27 = t18 * t26;
-    const iiwa14_real_t t28 = t9 - parameters[MX6];
+    const iiwa14_real_t t28 = t9 - parameters[MX6]; /* link j7: inertia of it and all beyond */
     const iiwa14_real_t t29 = parameters[MY6] - (parameters[MZ7] + t4);
-    const iiwa14_real_t t30 = t12 * t28 - t8 * t29;
-    const iiwa14_real_t t31 = parameters[MZ5] + t30;
+    const iiwa14_real_t t30 = t12 * t28 - t8 * t29; /* link j6: column of the mass matrix */
+    const iiwa14_real_t t31 = parameters[MZ5] + t30; /* link j6: inertia of it and all beyond */
     const iiwa14_real_t t32 = parameters[M5] + (parameters[M6] + parameters[M7]);
-    const iiwa14_real_t t33 = IIWA14_C(0.4) * t32;
+    const iiwa14_real_t t33 = IIWA14_C(0.4) * t32; /* link j5: inertia of it and all beyond */
     const iiwa14_real_t t34 = IIWA14_C(0.4) * (t33 + IIWA14_C(2.0) * t31);
     const iiwa14_real_t t35 = parameters[XX4] + (t17 - t27 + t34);
-    const iiwa14_real_t t36 = parameters[ZZ5] + (t6 + t14);
-    const iiwa14_real_t t37 = parameters[YY4] + t36;
-    const iiwa14_real_t t39 = parameters[XZ5] - (t11 - t12 * t13);
-    const iiwa14_real_t t40 = t12 * t22 - t8 * t21;
-    const iiwa14_real_t t41 = parameters[YZ5] + t40;
+    const iiwa14_real_t t36 = parameters[ZZ5] + (t6 + t14); /* link j6: inertia of it and all beyond */
+    const iiwa14_real_t t37 = parameters[YY4] + t36; /* link j5: inertia of it and all beyond */
+    const iiwa14_real_t t39 = parameters[XZ5] - (t11 - t12 * t13); /* link j6: inertia of it and all beyond */
+    const iiwa14_real_t t40 = t12 * t22 - t8 * t21; /* link j6: column of the mass matrix */
+    const iiwa14_real_t t41 = parameters[YZ5] + t40; /* link j6: inertia of it and all beyond */
     const iiwa14_real_t t42 = parameters[MY5] + (parameters[MZ6] + t19);
-    const iiwa14_real_t t43 = t12 * t29 + t8 * t28;
-    const iiwa14_real_t t44 = t43 - parameters[MX5];
-    const iiwa14_real_t t45 = t25 * t42 + t18 * t44;
+    const iiwa14_real_t t43 = t12 * t29 + t8 * t28; /* link j6: column of the mass matrix */
+    const iiwa14_real_t t44 = t43 - parameters[MX5]; /* link j6: inertia of it and all beyond */
+    const iiwa14_real_t t45 = t25 * t42 + t18 * t44; /* link j5: column of the mass matrix */
     const iiwa14_real_t t46 = t18 * t39 - t25 * t41 + IIWA14_C(0.4) * t45;
-    const iiwa14_real_t t47 = parameters[XY4] + t46;
+    const iiwa14_real_t t47 = parameters[XY4] + t46; /* link j5: inertia of it and all beyond */
+    /* link j4: inertia of it and all beyond */
     const iiwa14_real_t t49 = t38 * (t37 - t35) + t47 * (IIWA14_C(2.0) * t48);
     const iiwa14_real_t t50 = t38 * t49;
     const iiwa14_real_t t51 = parameters[XX3] + (t37 - t50);
-    const iiwa14_real_t t52 = parameters[ZZ4] + (t15 + t27 + t34);
-    const iiwa14_real_t t53 = parameters[YY3] + t52;
-    const iiwa14_real_t t55 = parameters[XZ4] + (t24 + t25 * t26);
-    const iiwa14_real_t t56 = t25 * t44 - t18 * t42;
+    const iiwa14_real_t t52 = parameters[ZZ4] + (t15 + t27 + t34); /* link j5: inertia of it and all beyond */
+    const iiwa14_real_t t53 = parameters[YY3] + t52; /* link j4: inertia of it and all beyond */
+    const iiwa14_real_t t55 = parameters[XZ4] + (t24 + t25 * t26); /* link j5: inertia of it and all beyond */
+    const iiwa14_real_t t56 = t25 * t44 - t18 * t42; /* link j5: column of the mass matrix */
     const iiwa14_real_t t57 = IIWA14_C(-0.4) * t56 - (t25 * t39 + t18 * t41);
-    const iiwa14_real_t t58 = parameters[YZ4] + t57;
-    const iiwa14_real_t t59 = t38 * t55 - t48 * t58;
-    const iiwa14_real_t t60 = t59 - parameters[XY3];
+    const iiwa14_real_t t58 = parameters[YZ4] + t57; /* link j5: inertia of it and all beyond */
+    const iiwa14_real_t t59 = t38 * t55 - t48 * t58; /* link j4: column of the mass matrix */
+    const iiwa14_real_t t60 = t59 - parameters[XY3]; /* link j4: inertia of it and all beyond */
+    /* link j3: inertia of it and all beyond */
     const iiwa14_real_t t62 = t54 * (t53 - t51) - t60 * (IIWA14_C(2.0) * t61);
     const iiwa14_real_t t63 = t54 * t62;
-    const iiwa14_real_t t64 = parameters[MX4] - t45;
+    const iiwa14_real_t t64 = parameters[MX4] - t45; /* link j5: inertia of it and all beyond */
     const iiwa14_real_t t65 = parameters[MY4] + (t31 + t33);
-    const iiwa14_real_t t66 = t38 * t65 + t48 * t64;
+    const iiwa14_real_t t66 = t38 * t65 + t48 * t64; /* link j4: column of the mass matrix */
+    /* link j3: inertia of it and all beyond */
     const iiwa14_real_t t67 = IIWA14_C(0.42) * (parameters[M3] + (parameters[M4] + t32))
         + IIWA14_C(2.0) * (parameters[MZ3] + t66);
     const iiwa14_real_t t68 = IIWA14_C(0.42) * t67;
     const iiwa14_real_t t69 = parameters[XX2] + (t53 - t63 + t68);
-    const iiwa14_real_t t70 = parameters[ZZ3] + (t35 + t50);
+    const iiwa14_real_t t70 = parameters[ZZ3] + (t35 + t50); /* link j4: inertia of it and all beyond */
     const iiwa14_real_t t72 = parameters[XZ3] + (t47 - t48 * t49);
-    const iiwa14_real_t t73 = t48 * t55 + t38 * t58;
-    const iiwa14_real_t t74 = parameters[YZ3] - t73;
+    const iiwa14_real_t t73 = t48 * t55 + t38 * t58; /* link j4: column of the mass matrix */
+    const iiwa14_real_t t74 = parameters[YZ3] - t73; /* link j4: inertia of it and all beyond */
     const iiwa14_real_t t75 = parameters[MZ4] + t56 - parameters[MY3];
     const iiwa14_real_t t76 = parameters[MX3] - (t48 * t65 - t38 * t64);
+    /* link j3: column of the mass matrix */
     const iiwa14_real_t t77 = t61 * t74 - t54 * t72 + IIWA14_C(0.42) * (t61 * t75 + t54 * t76);
+    /* link j2: inertia of it and all beyond */
     const iiwa14_real_t t79 = t71 * (parameters[YY2] + t70 - t69) + (parameters[XY2]
         + t77) * (IIWA14_C(2.0) * t78);
     out[0] = parameters[ZZ1] + (t69 + t71 * t79) + IIWA14_C(2.56e4) * parameters[IA1];
+    /* link j3: column of the mass matrix */
     const iiwa14_real_t t80 = t61 * t72 + t54 * t74 + IIWA14_C(0.42) * (t54 * t75 - t61 * t76);
+    /* link j2: column of the mass matrix */
     const iiwa14_real_t t81 = t78 * (t60 + t61 * t62 - parameters[XZ2]) + t71 * (t80 - parameters[YZ2]);
     out[1] = t81;
-    const iiwa14_real_t t82 = t78 * t77 + t71 * t70;
+    const iiwa14_real_t t82 = t78 * t77 + t71 * t70; /* link j3: column of the mass matrix */
     out[2] = t82;
+    /* link j4: column of the mass matrix */
     const iiwa14_real_t t83 = IIWA14_C(-0.42) * (t61 * t66) - (t54 * t59 + t61 * t52);
     const iiwa14_real_t t84 = t78 * t83 + t71 * t73;
     out[3] = t84;
-    const iiwa14_real_t t85 = t38 * t46 - t48 * t36;
+    const iiwa14_real_t t85 = t38 * t46 - t48 * t36; /* link j5: column of the mass matrix */
     const iiwa14_real_t t86 = t38 * t56;
     const iiwa14_real_t t87 = IIWA14_C(0.42) * (t61 * t86 - t54 * t45) - (t54 * t85 + t61 * t57);
     const iiwa14_real_t t88 = t48 * t46 + t38 * t36;
     const iiwa14_real_t t89 = t78 * t87 + t71 * t88;
     out[4] = t89;
-    const iiwa14_real_t t90 = t25 * t30;
+    const iiwa14_real_t t90 = t25 * t30; /* link j6: column of the mass matrix */
     const iiwa14_real_t t91 = IIWA14_C(-0.4) * t90 - (t18 * t23 + t25 * t16);
     const iiwa14_real_t t92 = t38 * t91 - t48 * t40;
     const iiwa14_real_t t93 = t18 * t30;
@@ -251,7 +265,7 @@ int iiwa14_mass_matrix_standard(
     const iiwa14_real_t t97 = t48 * t91 + t38 * t40;
     const iiwa14_real_t t98 = t78 * t96 + t71 * t97;
     out[5] = t98;
-    const iiwa14_real_t t99 = t12 * parameters[ZZ7] - t8 * t10;
+    const iiwa14_real_t t99 = t12 * parameters[ZZ7] - t8 * t10; /* link j7: column of the mass matrix */
     const iiwa14_real_t t100 = t8 * t19;
     const iiwa14_real_t t101 = t25 * t100 + t18 * t9;
     const iiwa14_real_t t102 = t18 * t99 - t25 * t20 + IIWA14_C(0.4) * t101;
@@ -267,12 +281,16 @@ int iiwa14_mass_matrix_standard(
     out[7] = t81;
     out[8] = parameters[ZZ2] + (t51 + t63 + t68) + IIWA14_C(2.56e4) * parameters[IA2];
     out[9] = t80;
+    /* link j4: column of the mass matrix */
     const iiwa14_real_t t111 = t61 * t59 - t54 * t52 + IIWA14_C(-0.42) * (t54 * t66);
     out[10] = t111;
+    /* link j5: column of the mass matrix */
     const iiwa14_real_t t112 = t61 * t85 - t54 * t57 + IIWA14_C(0.42) * (t54 * t86 + t61 * t45);
     out[11] = t112;
+    /* link j6: column of the mass matrix */
     const iiwa14_real_t t113 = t61 * t92 - t54 * t94 + IIWA14_C(0.42) * (t54 * t95 - t61 * t90);
     out[12] = t113;
+    /* link j7: column of the mass matrix */
     const iiwa14_real_t t114 = t61 * t104 - t54 * t106 + IIWA14_C(0.42) * (t61 * t101 - t54 * t107);
     out[13] = t114;
     out[14] = t82;

@@ -14,7 +14,8 @@
  *
  * Every function returns PUMA560_STATUS_OK, or the sum of the PUMA560_STATUS_ bits that apply; all of
  * its outputs are then zero. Inputs are checked by their Euclidean norm, so one that is not finite is
- * found too (not with -ffast-math). Outputs may not overlap inputs. Matrices are row-major.
+ * found too (not with -ffast-math). Outputs may not overlap inputs. Matrices are row-major. In the sources a
+ * remark behind a value says which link or joint it belongs to, and those after it up to the next remark.
  *
  * Coordinates:
  *
@@ -85,7 +86,7 @@
 #define PUMA560_H
 
 /** Number of this generation: header and sources of different ones do not compile together. */
-#define PUMA560_GENERATION 0xAC9DC6F4UL
+#define PUMA560_GENERATION 0x0486C622UL
 
 /** SHA-256 of the description that this is the model of, then after a blank the description's version, if any. */
 #define PUMA560_MODEL "e8eb13fe224405b26bd20c4ed5e9d26e90682bc514ecddfa30f598ec8b9ba255"
@@ -118,6 +119,7 @@
 #define puma560_mass_matrix puma560_mass_matrix_float
 #define puma560_forward_dynamics puma560_forward_dynamics_float
 #define puma560_energy puma560_energy_float
+#define puma560_joint_effort puma560_joint_effort_float
 #define puma560_regressor puma560_regressor_float
 #define puma560_regressor_standard puma560_regressor_standard_float
 #define puma560_regressor_packed puma560_regressor_packed_float
@@ -128,6 +130,7 @@
 #define puma560_mass_matrix_standard puma560_mass_matrix_standard_float
 #define puma560_forward_dynamics_standard puma560_forward_dynamics_standard_float
 #define puma560_energy_standard puma560_energy_standard_float
+#define puma560_joint_effort_standard puma560_joint_effort_standard_float
 #define puma560_forward_kinematics puma560_forward_kinematics_float
 #define puma560_jacobian puma560_jacobian_float
 #define puma560_motor_from_joint puma560_motor_from_joint_float
@@ -137,6 +140,8 @@
 #define puma560_forward_dynamics_derivatives puma560_forward_dynamics_derivatives_float
 #define puma560_inverse_dynamics_derivatives_standard puma560_inverse_dynamics_derivatives_standard_float
 #define puma560_forward_dynamics_derivatives_standard puma560_forward_dynamics_derivatives_standard_float
+#define puma560_momentum_observer_step puma560_momentum_observer_step_float
+#define puma560_momentum_observer_step_standard puma560_momentum_observer_step_standard_float
 #define puma560_check_parameters puma560_check_parameters_float
 #define puma560_check_parameters_standard puma560_check_parameters_standard_float
 #define puma560_model puma560_model_float
@@ -156,11 +161,16 @@ typedef PUMA560_REAL puma560_real_t;
 #define PUMA560_N_PARAMETERS           52   /**< base parameters */
 #define PUMA560_N_STANDARD_PARAMETERS  78   /**< standard parameters */
 #define PUMA560_N_PACKED               155  /**< structural non-zeros of the regressor */
+#define PUMA560_N_OBSERVER_STATES      6    /**< state of the observer: the momentum that the model expects
+                                            */
 
-#define PUMA560_STATUS_OK     0
-#define PUMA560_STATUS_STROKE 1 /**< a lever would leave its stroke */
-#define PUMA560_STATUS_PIVOT  2 /**< a pivot of the mass matrix vanishes, or the result is beyond 1e15 */
-#define PUMA560_STATUS_INPUT  4 /**< an input is not finite or beyond its bound */
+/** PUMA560_STATUS_OK or bits of the others. */
+typedef unsigned int puma560_status_t;
+
+#define PUMA560_STATUS_OK     0U
+#define PUMA560_STATUS_STROKE 1U /**< a lever would leave its stroke */
+#define PUMA560_STATUS_PIVOT  2U /**< a pivot of the mass matrix vanishes, or the result is beyond 1e15 */
+#define PUMA560_STATUS_INPUT  4U /**< an input is not finite or beyond its bound */
 
 /** Indices of the base parameters. */
 enum {
@@ -318,7 +328,7 @@ const char *puma560_model(void);
  *
  * @return PUMA560_STATUS_OK or PUMA560_STATUS_INPUT
  */
-int puma560_check_parameters(const puma560_real_t parameters[PUMA560_N_PARAMETERS]);
+puma560_status_t puma560_check_parameters(const puma560_real_t parameters[PUMA560_N_PARAMETERS]);
 
 /**
  * Whether standard parameters can be used: finite, and their norm within its bound. Every function that takes them checks
@@ -326,7 +336,7 @@ int puma560_check_parameters(const puma560_real_t parameters[PUMA560_N_PARAMETER
  *
  * @return PUMA560_STATUS_OK or PUMA560_STATUS_INPUT
  */
-int puma560_check_parameters_standard(const puma560_real_t parameters[PUMA560_N_STANDARD_PARAMETERS]);
+puma560_status_t puma560_check_parameters_standard(const puma560_real_t parameters[PUMA560_N_STANDARD_PARAMETERS]);
 
 /**
  * Inputs that give the accelerations ddq in the state q, dq; base parameters.
@@ -338,9 +348,9 @@ int puma560_check_parameters_standard(const puma560_real_t parameters[PUMA560_N_
  * @param[out]  out         [6]   [A]        inputs: motor currents, efforts where undriven
  * @return PUMA560_STATUS_OK or status bits
  *
- * Operations: 538 (289 mul, 249 add, 0 neg), 10 trig, 6 other.
+ * Operations: 538 (289 mul, 249 add, 0 neg), 10 trig, 6 other calls (sign, select and the like).
  */
-int puma560_inverse_dynamics(
+puma560_status_t puma560_inverse_dynamics(
     const puma560_real_t q[PUMA560_N_JOINTS],
     const puma560_real_t dq[PUMA560_N_JOINTS],
     const puma560_real_t ddq[PUMA560_N_JOINTS],
@@ -357,7 +367,7 @@ int puma560_inverse_dynamics(
  *
  * Operations: 84 (56 mul, 28 add, 0 neg), 10 trig.
  */
-int puma560_gravity(
+puma560_status_t puma560_gravity(
     const puma560_real_t q[PUMA560_N_JOINTS],
     const puma560_real_t parameters[PUMA560_N_PARAMETERS],
     puma560_real_t out[PUMA560_N_JOINTS]);
@@ -371,9 +381,9 @@ int puma560_gravity(
  * @param[out]  out         [6]   [A]      inputs: motor currents, efforts where undriven
  * @return PUMA560_STATUS_OK or status bits
  *
- * Operations: 490 (270 mul, 220 add, 0 neg), 10 trig, 6 other.
+ * Operations: 490 (270 mul, 220 add, 0 neg), 10 trig, 6 other calls (sign, select and the like).
  */
-int puma560_bias(
+puma560_status_t puma560_bias(
     const puma560_real_t q[PUMA560_N_JOINTS],
     const puma560_real_t dq[PUMA560_N_JOINTS],
     const puma560_real_t parameters[PUMA560_N_PARAMETERS],
@@ -389,7 +399,7 @@ int puma560_bias(
  *
  * Operations: 274 (142 mul, 130 add, 2 neg), 10 trig.
  */
-int puma560_mass_matrix(
+puma560_status_t puma560_mass_matrix(
     const puma560_real_t q[PUMA560_N_JOINTS],
     const puma560_real_t parameters[PUMA560_N_PARAMETERS],
     puma560_real_t out[PUMA560_N_JOINTS * PUMA560_N_JOINTS]);
@@ -405,9 +415,9 @@ int puma560_mass_matrix(
  * @param[out]  out         [6]   [rad/s^2]  joint accelerations
  * @return PUMA560_STATUS_OK or status bits
  *
- * Operations: 929 (503 mul, 426 add, 0 neg), 6 div, 10 trig, 6 other.
+ * Operations: 929 (503 mul, 426 add, 0 neg), 6 div, 10 trig, 6 other calls (sign, select and the like).
  */
-int puma560_forward_dynamics(
+puma560_status_t puma560_forward_dynamics(
     const puma560_real_t q[PUMA560_N_JOINTS],
     const puma560_real_t dq[PUMA560_N_JOINTS],
     const puma560_real_t input[PUMA560_N_JOINTS],
@@ -426,12 +436,32 @@ int puma560_forward_dynamics(
  *
  * Operations: 271 (171 mul, 100 add, 0 neg), 10 trig.
  */
-int puma560_energy(
+puma560_status_t puma560_energy(
     const puma560_real_t q[PUMA560_N_JOINTS],
     const puma560_real_t dq[PUMA560_N_JOINTS],
     const puma560_real_t parameters[PUMA560_N_PARAMETERS],
     puma560_real_t kinetic[1],
     puma560_real_t potential[1]);
+
+/**
+ * Efforts of the drives at the joints that give the accelerations ddq in the state q, dq; base
+ * parameters.
+ *
+ * @param[in]   q           [6]   [rad]      joint coordinates; norm at most 10000
+ * @param[in]   dq          [6]   [rad/s]    joint velocities; norm at most 100000
+ * @param[in]   ddq         [6]   [rad/s^2]  joint accelerations; norm at most 1e+08
+ * @param[in]   parameters  [52]             base parameters; norm at most 1e+09
+ * @param[out]  out         [6]   [N m]      efforts at the joints
+ * @return PUMA560_STATUS_OK or status bits
+ *
+ * Operations: 532 (283 mul, 249 add, 0 neg), 10 trig, 6 other calls (sign, select and the like).
+ */
+puma560_status_t puma560_joint_effort(
+    const puma560_real_t q[PUMA560_N_JOINTS],
+    const puma560_real_t dq[PUMA560_N_JOINTS],
+    const puma560_real_t ddq[PUMA560_N_JOINTS],
+    const puma560_real_t parameters[PUMA560_N_PARAMETERS],
+    puma560_real_t out[PUMA560_N_JOINTS]);
 
 /**
  * Inputs per unit of each base parameter.
@@ -443,9 +473,9 @@ int puma560_energy(
  *                                                         row-major
  * @return PUMA560_STATUS_OK or status bits
  *
- * Operations: 757 (470 mul, 283 add, 4 neg), 10 trig, 6 other.
+ * Operations: 757 (470 mul, 283 add, 4 neg), 10 trig, 6 other calls (sign, select and the like).
  */
-int puma560_regressor(
+puma560_status_t puma560_regressor(
     const puma560_real_t q[PUMA560_N_JOINTS],
     const puma560_real_t dq[PUMA560_N_JOINTS],
     const puma560_real_t ddq[PUMA560_N_JOINTS],
@@ -461,9 +491,9 @@ int puma560_regressor(
  *                                                         row-major
  * @return PUMA560_STATUS_OK or status bits
  *
- * Operations: 844 (506 mul, 323 add, 15 neg), 10 trig, 6 other.
+ * Operations: 844 (506 mul, 323 add, 15 neg), 10 trig, 6 other calls (sign, select and the like).
  */
-int puma560_regressor_standard(
+puma560_status_t puma560_regressor_standard(
     const puma560_real_t q[PUMA560_N_JOINTS],
     const puma560_real_t dq[PUMA560_N_JOINTS],
     const puma560_real_t ddq[PUMA560_N_JOINTS],
@@ -478,9 +508,9 @@ int puma560_regressor_standard(
  * @param[out]  out  [155]  [A per unit of the parameter]  structural non-zeros, row after row
  * @return PUMA560_STATUS_OK or status bits
  *
- * Operations: 757 (470 mul, 283 add, 4 neg), 10 trig, 6 other.
+ * Operations: 757 (470 mul, 283 add, 4 neg), 10 trig, 6 other calls (sign, select and the like).
  */
-int puma560_regressor_packed(
+puma560_status_t puma560_regressor_packed(
     const puma560_real_t q[PUMA560_N_JOINTS],
     const puma560_real_t dq[PUMA560_N_JOINTS],
     const puma560_real_t ddq[PUMA560_N_JOINTS],
@@ -498,9 +528,9 @@ int puma560_regressor_packed(
  *                                                           row-major
  * @return PUMA560_STATUS_OK or status bits
  *
- * Operations: 826 (516 mul, 308 add, 2 neg), 10 trig, 6 other.
+ * Operations: 826 (516 mul, 308 add, 2 neg), 10 trig, 6 other calls (sign, select and the like).
  */
-int puma560_slotine_li_regressor(
+puma560_status_t puma560_slotine_li_regressor(
     const puma560_real_t q[PUMA560_N_JOINTS],
     const puma560_real_t dq[PUMA560_N_JOINTS],
     const puma560_real_t dq_r[PUMA560_N_JOINTS],
@@ -517,9 +547,9 @@ int puma560_slotine_li_regressor(
  * @param[out]  out         [6]   [A]        inputs: motor currents, efforts where undriven
  * @return PUMA560_STATUS_OK or status bits
  *
- * Operations: 636 (332 mul, 304 add, 0 neg), 10 trig, 6 other.
+ * Operations: 636 (332 mul, 304 add, 0 neg), 10 trig, 6 other calls (sign, select and the like).
  */
-int puma560_inverse_dynamics_standard(
+puma560_status_t puma560_inverse_dynamics_standard(
     const puma560_real_t q[PUMA560_N_JOINTS],
     const puma560_real_t dq[PUMA560_N_JOINTS],
     const puma560_real_t ddq[PUMA560_N_JOINTS],
@@ -536,7 +566,7 @@ int puma560_inverse_dynamics_standard(
  *
  * Operations: 162 (100 mul, 62 add, 0 neg), 10 trig.
  */
-int puma560_gravity_standard(
+puma560_status_t puma560_gravity_standard(
     const puma560_real_t q[PUMA560_N_JOINTS],
     const puma560_real_t parameters[PUMA560_N_STANDARD_PARAMETERS],
     puma560_real_t out[PUMA560_N_JOINTS]);
@@ -550,9 +580,9 @@ int puma560_gravity_standard(
  * @param[out]  out         [6]   [A]      inputs: motor currents, efforts where undriven
  * @return PUMA560_STATUS_OK or status bits
  *
- * Operations: 578 (307 mul, 271 add, 0 neg), 10 trig, 6 other.
+ * Operations: 578 (307 mul, 271 add, 0 neg), 10 trig, 6 other calls (sign, select and the like).
  */
-int puma560_bias_standard(
+puma560_status_t puma560_bias_standard(
     const puma560_real_t q[PUMA560_N_JOINTS],
     const puma560_real_t dq[PUMA560_N_JOINTS],
     const puma560_real_t parameters[PUMA560_N_STANDARD_PARAMETERS],
@@ -568,7 +598,7 @@ int puma560_bias_standard(
  *
  * Operations: 309 (155 mul, 152 add, 2 neg), 10 trig.
  */
-int puma560_mass_matrix_standard(
+puma560_status_t puma560_mass_matrix_standard(
     const puma560_real_t q[PUMA560_N_JOINTS],
     const puma560_real_t parameters[PUMA560_N_STANDARD_PARAMETERS],
     puma560_real_t out[PUMA560_N_JOINTS * PUMA560_N_JOINTS]);
@@ -584,9 +614,9 @@ int puma560_mass_matrix_standard(
  * @param[out]  out         [6]   [rad/s^2]  joint accelerations
  * @return PUMA560_STATUS_OK or status bits
  *
- * Operations: 1051 (553 mul, 498 add, 0 neg), 6 div, 10 trig, 6 other.
+ * Operations: 1051 (553 mul, 498 add, 0 neg), 6 div, 10 trig, 6 other calls (sign, select and the like).
  */
-int puma560_forward_dynamics_standard(
+puma560_status_t puma560_forward_dynamics_standard(
     const puma560_real_t q[PUMA560_N_JOINTS],
     const puma560_real_t dq[PUMA560_N_JOINTS],
     const puma560_real_t input[PUMA560_N_JOINTS],
@@ -605,12 +635,32 @@ int puma560_forward_dynamics_standard(
  *
  * Operations: 358 (221 mul, 137 add, 0 neg), 10 trig.
  */
-int puma560_energy_standard(
+puma560_status_t puma560_energy_standard(
     const puma560_real_t q[PUMA560_N_JOINTS],
     const puma560_real_t dq[PUMA560_N_JOINTS],
     const puma560_real_t parameters[PUMA560_N_STANDARD_PARAMETERS],
     puma560_real_t kinetic[1],
     puma560_real_t potential[1]);
+
+/**
+ * Efforts of the drives at the joints that give the accelerations ddq in the state q, dq; standard
+ * parameters.
+ *
+ * @param[in]   q           [6]   [rad]      joint coordinates; norm at most 10000
+ * @param[in]   dq          [6]   [rad/s]    joint velocities; norm at most 100000
+ * @param[in]   ddq         [6]   [rad/s^2]  joint accelerations; norm at most 1e+08
+ * @param[in]   parameters  [78]             standard parameters; norm at most 1e+09
+ * @param[out]  out         [6]   [N m]      efforts at the joints
+ * @return PUMA560_STATUS_OK or status bits
+ *
+ * Operations: 630 (326 mul, 304 add, 0 neg), 10 trig, 6 other calls (sign, select and the like).
+ */
+puma560_status_t puma560_joint_effort_standard(
+    const puma560_real_t q[PUMA560_N_JOINTS],
+    const puma560_real_t dq[PUMA560_N_JOINTS],
+    const puma560_real_t ddq[PUMA560_N_JOINTS],
+    const puma560_real_t parameters[PUMA560_N_STANDARD_PARAMETERS],
+    puma560_real_t out[PUMA560_N_JOINTS]);
 
 /**
  * Homogeneous transforms from every link's frame to the base, link after link.
@@ -627,7 +677,7 @@ int puma560_energy_standard(
  *
  * Operations: 112 (61 mul, 30 add, 21 neg), 12 trig.
  */
-int puma560_forward_kinematics(
+puma560_status_t puma560_forward_kinematics(
     const puma560_real_t q[PUMA560_N_JOINTS],
     puma560_real_t out[16 * PUMA560_N_LINKS]);
 
@@ -640,7 +690,7 @@ int puma560_forward_kinematics(
  *
  * Operations: 80 (51 mul, 23 add, 6 neg), 10 trig.
  */
-int puma560_jacobian(
+puma560_status_t puma560_jacobian(
     const puma560_real_t q[PUMA560_N_JOINTS],
     puma560_real_t out[6 * PUMA560_N_JOINTS]);
 
@@ -657,7 +707,7 @@ int puma560_jacobian(
  *
  * Operations: 18 (18 mul, 0 add, 0 neg).
  */
-int puma560_motor_from_joint(
+puma560_status_t puma560_motor_from_joint(
     const puma560_real_t q[PUMA560_N_JOINTS],
     const puma560_real_t dq[PUMA560_N_JOINTS],
     const puma560_real_t ddq[PUMA560_N_JOINTS],
@@ -678,7 +728,7 @@ int puma560_motor_from_joint(
  *
  * Operations: 18 (18 mul, 0 add, 0 neg).
  */
-int puma560_joint_from_motor(
+puma560_status_t puma560_joint_from_motor(
     const puma560_real_t q_m[PUMA560_N_JOINTS],
     const puma560_real_t dq_m[PUMA560_N_JOINTS],
     const puma560_real_t ddq_m[PUMA560_N_JOINTS],
@@ -689,13 +739,13 @@ int puma560_joint_from_motor(
 /**
  * Joint effort per input.
  *
- * @param[in]   q    [6]  [rad]            joint coordinates; norm at most 10000
- * @param[out]  out  [6]  [(N m) per (A)]  drive gains K
+ * @param[in]   q    [6]  [rad]        joint coordinates; norm at most 10000
+ * @param[out]  out  [6]  [N m per A]  drive gains K
  * @return PUMA560_STATUS_OK or status bits
  *
  * Operations: 0 (0 mul, 0 add, 0 neg).
  */
-int puma560_drive_gain(
+puma560_status_t puma560_drive_gain(
     const puma560_real_t q[PUMA560_N_JOINTS],
     puma560_real_t out[PUMA560_N_JOINTS]);
 
@@ -703,19 +753,19 @@ int puma560_drive_gain(
  * Inputs that give the accelerations ddq, and their derivatives; at a kink of a law, as of dry
  * friction at rest, the mean of both sides; base parameters.
  *
- * @param[in]   q             [6]   [rad]                joint coordinates; norm at most 10000
- * @param[in]   dq            [6]   [rad/s]              joint velocities; norm at most 100000
- * @param[in]   ddq           [6]   [rad/s^2]            joint accelerations; norm at most 1e+08
- * @param[in]   parameters    [52]                       base parameters; norm at most 1e+09
- * @param[out]  input         [6]   [A]                  inputs: motor currents, efforts where undriven
- * @param[out]  input_by_q    [36]  [(A) per (rad)]      d input / d q; 6 x 6, row-major
- * @param[out]  input_by_dq   [36]  [(A) per (rad/s)]    d input / d dq; 6 x 6, row-major
- * @param[out]  input_by_ddq  [36]  [(A) per (rad/s^2)]  d input / d ddq; 6 x 6, row-major
+ * @param[in]   q             [6]   [rad]              joint coordinates; norm at most 10000
+ * @param[in]   dq            [6]   [rad/s]            joint velocities; norm at most 100000
+ * @param[in]   ddq           [6]   [rad/s^2]          joint accelerations; norm at most 1e+08
+ * @param[in]   parameters    [52]                     base parameters; norm at most 1e+09
+ * @param[out]  input         [6]   [A]                inputs: motor currents, efforts where undriven
+ * @param[out]  input_by_q    [36]  [A per rad]        d input / d q; 6 x 6, row-major
+ * @param[out]  input_by_dq   [36]  [A per (rad/s)]    d input / d dq; 6 x 6, row-major
+ * @param[out]  input_by_ddq  [36]  [A per (rad/s^2)]  d input / d ddq; 6 x 6, row-major
  * @return PUMA560_STATUS_OK or status bits
  *
- * Operations: 2454 (1389 mul, 1065 add, 0 neg), 10 trig, 6 other.
+ * Operations: 2454 (1389 mul, 1065 add, 0 neg), 10 trig, 6 other calls (sign, select and the like).
  */
-int puma560_inverse_dynamics_derivatives(
+puma560_status_t puma560_inverse_dynamics_derivatives(
     const puma560_real_t q[PUMA560_N_JOINTS],
     const puma560_real_t dq[PUMA560_N_JOINTS],
     const puma560_real_t ddq[PUMA560_N_JOINTS],
@@ -735,14 +785,14 @@ int puma560_inverse_dynamics_derivatives(
  *                                                           norm at most 1e+09
  * @param[in]   parameters    [52]                           base parameters; norm at most 1e+09
  * @param[out]  ddq           [6]   [rad/s^2]                joint accelerations
- * @param[out]  ddq_by_q      [36]  [(rad/s^2) per (rad)]    d ddq / d q; 6 x 6, row-major
+ * @param[out]  ddq_by_q      [36]  [(rad/s^2) per rad]      d ddq / d q; 6 x 6, row-major
  * @param[out]  ddq_by_dq     [36]  [(rad/s^2) per (rad/s)]  d ddq / d dq; 6 x 6, row-major
- * @param[out]  ddq_by_input  [36]  [(rad/s^2) per (A)]      d ddq / d input; 6 x 6, row-major
+ * @param[out]  ddq_by_input  [36]  [(rad/s^2) per A]        d ddq / d input; 6 x 6, row-major
  * @return PUMA560_STATUS_OK or status bits
  *
- * Operations: 3835 (2137 mul, 1698 add, 0 neg), 6 div, 10 trig, 6 other.
+ * Operations: 3835 (2137 mul, 1698 add, 0 neg), 6 div, 10 trig, 6 other calls (sign, select and the like).
  */
-int puma560_forward_dynamics_derivatives(
+puma560_status_t puma560_forward_dynamics_derivatives(
     const puma560_real_t q[PUMA560_N_JOINTS],
     const puma560_real_t dq[PUMA560_N_JOINTS],
     const puma560_real_t input[PUMA560_N_JOINTS],
@@ -756,19 +806,19 @@ int puma560_forward_dynamics_derivatives(
  * Inputs that give the accelerations ddq, and their derivatives; at a kink of a law, as of dry
  * friction at rest, the mean of both sides; standard parameters.
  *
- * @param[in]   q             [6]   [rad]                joint coordinates; norm at most 10000
- * @param[in]   dq            [6]   [rad/s]              joint velocities; norm at most 100000
- * @param[in]   ddq           [6]   [rad/s^2]            joint accelerations; norm at most 1e+08
- * @param[in]   parameters    [78]                       standard parameters; norm at most 1e+09
- * @param[out]  input         [6]   [A]                  inputs: motor currents, efforts where undriven
- * @param[out]  input_by_q    [36]  [(A) per (rad)]      d input / d q; 6 x 6, row-major
- * @param[out]  input_by_dq   [36]  [(A) per (rad/s)]    d input / d dq; 6 x 6, row-major
- * @param[out]  input_by_ddq  [36]  [(A) per (rad/s^2)]  d input / d ddq; 6 x 6, row-major
+ * @param[in]   q             [6]   [rad]              joint coordinates; norm at most 10000
+ * @param[in]   dq            [6]   [rad/s]            joint velocities; norm at most 100000
+ * @param[in]   ddq           [6]   [rad/s^2]          joint accelerations; norm at most 1e+08
+ * @param[in]   parameters    [78]                     standard parameters; norm at most 1e+09
+ * @param[out]  input         [6]   [A]                inputs: motor currents, efforts where undriven
+ * @param[out]  input_by_q    [36]  [A per rad]        d input / d q; 6 x 6, row-major
+ * @param[out]  input_by_dq   [36]  [A per (rad/s)]    d input / d dq; 6 x 6, row-major
+ * @param[out]  input_by_ddq  [36]  [A per (rad/s^2)]  d input / d ddq; 6 x 6, row-major
  * @return PUMA560_STATUS_OK or status bits
  *
- * Operations: 2647 (1471 mul, 1176 add, 0 neg), 10 trig, 6 other.
+ * Operations: 2647 (1471 mul, 1176 add, 0 neg), 10 trig, 6 other calls (sign, select and the like).
  */
-int puma560_inverse_dynamics_derivatives_standard(
+puma560_status_t puma560_inverse_dynamics_derivatives_standard(
     const puma560_real_t q[PUMA560_N_JOINTS],
     const puma560_real_t dq[PUMA560_N_JOINTS],
     const puma560_real_t ddq[PUMA560_N_JOINTS],
@@ -788,14 +838,14 @@ int puma560_inverse_dynamics_derivatives_standard(
  *                                                           norm at most 1e+09
  * @param[in]   parameters    [78]                           standard parameters; norm at most 1e+09
  * @param[out]  ddq           [6]   [rad/s^2]                joint accelerations
- * @param[out]  ddq_by_q      [36]  [(rad/s^2) per (rad)]    d ddq / d q; 6 x 6, row-major
+ * @param[out]  ddq_by_q      [36]  [(rad/s^2) per rad]      d ddq / d q; 6 x 6, row-major
  * @param[out]  ddq_by_dq     [36]  [(rad/s^2) per (rad/s)]  d ddq / d dq; 6 x 6, row-major
- * @param[out]  ddq_by_input  [36]  [(rad/s^2) per (A)]      d ddq / d input; 6 x 6, row-major
+ * @param[out]  ddq_by_input  [36]  [(rad/s^2) per A]        d ddq / d input; 6 x 6, row-major
  * @return PUMA560_STATUS_OK or status bits
  *
- * Operations: 4098 (2250 mul, 1848 add, 0 neg), 6 div, 10 trig, 6 other.
+ * Operations: 4098 (2250 mul, 1848 add, 0 neg), 6 div, 10 trig, 6 other calls (sign, select and the like).
  */
-int puma560_forward_dynamics_derivatives_standard(
+puma560_status_t puma560_forward_dynamics_derivatives_standard(
     const puma560_real_t q[PUMA560_N_JOINTS],
     const puma560_real_t dq[PUMA560_N_JOINTS],
     const puma560_real_t input[PUMA560_N_JOINTS],
@@ -804,6 +854,66 @@ int puma560_forward_dynamics_derivatives_standard(
     puma560_real_t ddq_by_q[PUMA560_N_JOINTS * PUMA560_N_JOINTS],
     puma560_real_t ddq_by_dq[PUMA560_N_JOINTS * PUMA560_N_JOINTS],
     puma560_real_t ddq_by_input[PUMA560_N_JOINTS * PUMA560_N_JOINTS]);
+
+/**
+ * External efforts at the joints by the generalised momentum, with a delay of 1 / gain; state: zero at
+ * first, then what the step before gave; base parameters.
+ *
+ * @param[in]   q           [6]   [rad]       joint coordinates; norm at most 10000
+ * @param[in]   dq          [6]   [rad/s]     joint velocities; norm at most 100000
+ * @param[in]   input       [6]   [A]         inputs: motor currents, efforts where undriven; norm at most
+ *                                            1e+09
+ * @param[in]   dt          [1]   [s]         time step; norm at most 10000
+ * @param[in]   gain        [6]   [1/s]       gains of the observer, gain dt below 1; norm at most 100000
+ * @param[in]   parameters  [52]              base parameters; norm at most 1e+09
+ * @param[in]   state       [6]   [kg m^2/s]  state of the observer: the momentum that the model expects; norm
+ *                                            at most 1e+09
+ * @param[out]  state_next  [6]   [kg m^2/s]  state after the step
+ * @param[out]  external    [6]   [N m]       efforts that act on the arm from outside
+ * @return PUMA560_STATUS_OK or status bits
+ *
+ * Operations: 496 (281 mul, 209 add, 6 neg), 10 trig, 6 other calls (sign, select and the like).
+ */
+puma560_status_t puma560_momentum_observer_step(
+    const puma560_real_t q[PUMA560_N_JOINTS],
+    const puma560_real_t dq[PUMA560_N_JOINTS],
+    const puma560_real_t input[PUMA560_N_JOINTS],
+    const puma560_real_t dt[1],
+    const puma560_real_t gain[PUMA560_N_JOINTS],
+    const puma560_real_t parameters[PUMA560_N_PARAMETERS],
+    const puma560_real_t state[PUMA560_N_OBSERVER_STATES],
+    puma560_real_t state_next[PUMA560_N_OBSERVER_STATES],
+    puma560_real_t external[PUMA560_N_JOINTS]);
+
+/**
+ * External efforts at the joints by the generalised momentum, with a delay of 1 / gain; state: zero at
+ * first, then what the step before gave; standard parameters.
+ *
+ * @param[in]   q           [6]   [rad]       joint coordinates; norm at most 10000
+ * @param[in]   dq          [6]   [rad/s]     joint velocities; norm at most 100000
+ * @param[in]   input       [6]   [A]         inputs: motor currents, efforts where undriven; norm at most
+ *                                            1e+09
+ * @param[in]   dt          [1]   [s]         time step; norm at most 10000
+ * @param[in]   gain        [6]   [1/s]       gains of the observer, gain dt below 1; norm at most 100000
+ * @param[in]   parameters  [78]              standard parameters; norm at most 1e+09
+ * @param[in]   state       [6]   [kg m^2/s]  state of the observer: the momentum that the model expects; norm
+ *                                            at most 1e+09
+ * @param[out]  state_next  [6]   [kg m^2/s]  state after the step
+ * @param[out]  external    [6]   [N m]       efforts that act on the arm from outside
+ * @return PUMA560_STATUS_OK or status bits
+ *
+ * Operations: 646 (362 mul, 278 add, 6 neg), 10 trig, 6 other calls (sign, select and the like).
+ */
+puma560_status_t puma560_momentum_observer_step_standard(
+    const puma560_real_t q[PUMA560_N_JOINTS],
+    const puma560_real_t dq[PUMA560_N_JOINTS],
+    const puma560_real_t input[PUMA560_N_JOINTS],
+    const puma560_real_t dt[1],
+    const puma560_real_t gain[PUMA560_N_JOINTS],
+    const puma560_real_t parameters[PUMA560_N_STANDARD_PARAMETERS],
+    const puma560_real_t state[PUMA560_N_OBSERVER_STATES],
+    puma560_real_t state_next[PUMA560_N_OBSERVER_STATES],
+    puma560_real_t external[PUMA560_N_JOINTS]);
 
 #ifdef __cplusplus
 }

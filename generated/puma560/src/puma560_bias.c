@@ -6,7 +6,7 @@
  * Arm puma560, description e8eb13fe224405b2.
  * SPDX-License-Identifier: 0BSD
  *
- * Operations: 490 (270 mul, 220 add, 0 neg), 10 trig, 6 other.
+ * Operations: 490 (270 mul, 220 add, 0 neg), 10 trig, 6 other calls (sign, select and the like).
  *
  * @param[in]   q           [6]   [rad]    joint coordinates; norm at most 10000
  * @param[in]   dq          [6]   [rad/s]  joint velocities; norm at most 100000
@@ -80,11 +80,11 @@
  */
 #include "puma560_private.h"
 
-#if PUMA560_GENERATION != 0xAC9DC6F4UL
+#if PUMA560_GENERATION != 0x0486C622UL
 #error "puma560.h and puma560_bias.c are of different generations: generate the arm again"
 #endif
 
-int puma560_bias(
+puma560_status_t puma560_bias(
     const puma560_real_t q[PUMA560_N_JOINTS],
     const puma560_real_t dq[PUMA560_N_JOINTS],
     const puma560_real_t parameters[PUMA560_N_PARAMETERS],
@@ -93,7 +93,7 @@ int puma560_bias(
     enum { ZZ1R = 0, XX2R, XY2, XZ2R, YZ2, ZZ2R, MX2R, MY2, XX3R, XY3R, XZ3, YZ3, ZZ3R, MX3R, MY3R, XX4R, XY4,
         XZ4, YZ4, ZZ4R, MX4, MY4R, XX5R, XY5, XZ5, YZ5, ZZ5R, MX5, MY5R, XX6R, XY6, XZ6, YZ6, ZZ6, MX6, MY6,
         FV1, FC1, FV2, FC2, FV3, FC3, IA3, FV4, FC4, IA4, FV5, FC5, IA5, FV6, FC6, IA6 };
-    int status = PUMA560_STATUS_OK;
+    puma560_status_t status = PUMA560_STATUS_OK;
 
     if (!puma560_within_joints(q, PUMA560_C(1.0e8))
         || !puma560_within_joints(dq, PUMA560_C(1.0e10))
@@ -115,36 +115,36 @@ int puma560_bias(
     PUMA560_SINCOS(q[4], &t20, &t19);
     puma560_real_t t25, t39;
     PUMA560_SINCOS(q[5], &t25, &t39);
-    const puma560_real_t t1 = t0 * dq[0];
+    const puma560_real_t t1 = t0 * dq[0]; /* link j2: motion */
     const puma560_real_t t4 = t3 * dq[0];
-    const puma560_real_t t6 = t2 * t1 + t5 * t4;
+    const puma560_real_t t6 = t2 * t1 + t5 * t4; /* link j3: motion */
     const puma560_real_t t7 = t5 * t1 - t2 * t4;
     const puma560_real_t t8 = t6 * t7;
     const puma560_real_t t10 = dq[1] + dq[2];
     const puma560_real_t t11 = t7 * t10;
-    const puma560_real_t t12 = PUMA560_C(-2.0) * t11;
+    const puma560_real_t t12 = PUMA560_C(-2.0) * t11; /* link j4: motion */
     const puma560_real_t t14 = t9 * t8 - t13 * t12;
     const puma560_real_t t15 = t9 * t6 + t13 * t10;
     const puma560_real_t t16 = dq[3] + t7;
     const puma560_real_t t17 = t15 * t16;
     const puma560_real_t t18 = t14 - t17;
-    const puma560_real_t t21 = t19 * t15 - t20 * t16;
+    const puma560_real_t t21 = t19 * t15 - t20 * t16; /* link j5: motion */
     const puma560_real_t t22 = t20 * t15 + t19 * t16;
     const puma560_real_t t23 = t21 * t22;
-    const puma560_real_t t24 = t18 + t23;
-    const puma560_real_t t26 = t13 * t8 + t9 * t12;
+    const puma560_real_t t24 = t18 + t23; /* link j6: motion */
+    const puma560_real_t t26 = t13 * t8 + t9 * t12; /* link j4: motion */
     const puma560_real_t t27 = t9 * t10 - t13 * t6;
     const puma560_real_t t28 = t27 * t16;
     const puma560_real_t t29 = t26 + t28;
-    const puma560_real_t t30 = t28 + t29;
-    const puma560_real_t t31 = t15 * t27;
-    const puma560_real_t t32 = t6 * t10;
-    const puma560_real_t t33 = t31 - t32;
+    const puma560_real_t t30 = t28 + t29; /* link j5: motion */
+    const puma560_real_t t31 = t15 * t27; /* link j4: motion */
+    const puma560_real_t t32 = t6 * t10; /* link j3: motion */
+    const puma560_real_t t33 = t31 - t32; /* link j5: motion */
     const puma560_real_t t34 = t20 * t33 + t19 * t30;
     const puma560_real_t t35 = dq[4] + t27;
     const puma560_real_t t36 = t22 * t35;
     const puma560_real_t t37 = t34 - t36;
-    const puma560_real_t t38 = t37 - t36;
+    const puma560_real_t t38 = t37 - t36; /* link j6: motion */
     const puma560_real_t t40 = t25 * t24 + t39 * t38;
     const puma560_real_t t41 = t39 * t35 - t25 * t21;
     const puma560_real_t t42 = dq[5] + t22;
@@ -153,154 +153,187 @@ int puma560_bias(
     const puma560_real_t t45 = t25 * t38 - t39 * t24;
     const puma560_real_t t46 = t39 * t21 + t25 * t35;
     const puma560_real_t t47 = t46 * t42;
-    const puma560_real_t t48 = t47 + (t45 + t47);
-    const puma560_real_t t49 = t20 * t30 - t19 * t33;
+    const puma560_real_t t48 = t47 + (t45 + t47); /* link j6: force and moment */
+    const puma560_real_t t49 = t20 * t30 - t19 * t33; /* link j5: motion */
     const puma560_real_t t50 = t21 * t35;
     const puma560_real_t t51 = t49 + t50;
-    const puma560_real_t t52 = t46 * t41;
-    const puma560_real_t t53 = t51 + t52;
+    const puma560_real_t t52 = t46 * t41; /* link j6: motion */
+    const puma560_real_t t53 = t51 + t52; /* link j6: force and moment */
     const puma560_real_t t54 = parameters[XX6R] * t44 + parameters[ZZ6] * t43 - parameters[XY6] * t48
         - parameters[XZ6] * t53;
-    const puma560_real_t t55 = t41 * t41;
+    const puma560_real_t t55 = t41 * t41; /* link j6: motion */
     const puma560_real_t t56 = t42 * t42;
-    const puma560_real_t t57 = t7 * t7;
+    const puma560_real_t t57 = t7 * t7; /* link j3: motion */
     const puma560_real_t t58 = t10 * t10;
-    const puma560_real_t t59 = t57 + t58;
-    const puma560_real_t t60 = t4 * t4;
+    const puma560_real_t t59 = t57 + t58; /* link j4: motion */
+    const puma560_real_t t60 = t4 * t4; /* link j2: motion */
     const puma560_real_t t61 = dq[1] * dq[1];
     const puma560_real_t t62 = PUMA560_C(9.81) * t0;
-    const puma560_real_t t63 = t62 + PUMA560_C(0.4318) * (t61 + t60);
-    const puma560_real_t t64 = t1 * t4;
+    const puma560_real_t t63 = t62 + PUMA560_C(0.4318) * (t61 + t60); /* link j3: motion */
+    const puma560_real_t t64 = t1 * t4; /* link j2: motion */
     const puma560_real_t t65 = PUMA560_C(-9.81) * t3;
-    const puma560_real_t t66 = t65 + PUMA560_C(0.4318) * t64;
+    const puma560_real_t t66 = t65 + PUMA560_C(0.4318) * t64; /* link j3: motion */
     const puma560_real_t t67 = t2 * t63 - t5 * t66;
-    const puma560_real_t t68 = t67 + (PUMA560_C(0.0203) * t59 + PUMA560_C(0.4318) * t8);
-    const puma560_real_t t69 = t1 * t1;
+    const puma560_real_t t68 = t67 + (PUMA560_C(0.0203) * t59 + PUMA560_C(0.4318) * t8); /* link j4: motion */
+    const puma560_real_t t69 = t1 * t1; /* link j2: motion */
     const puma560_real_t t70 = dq[1] * t1;
+    /* link j3: motion */
     const puma560_real_t t71 = PUMA560_C(-0.8636) * t70 + PUMA560_C(-0.1254) * (t69 + t60);
-    const puma560_real_t t72 = PUMA560_C(0.0406) * t32 - PUMA560_C(0.8636) * t11 - t71;
+    const puma560_real_t t72 = PUMA560_C(0.0406) * t32 - PUMA560_C(0.8636) * t11 - t71; /* link j4: motion */
     const puma560_real_t t73 = t9 * t68 - t13 * t72;
-    const puma560_real_t t74 = t6 * t6;
-    const puma560_real_t t75 = t74 + t58;
-    const puma560_real_t t76 = t5 * t63 + t2 * t66;
+    const puma560_real_t t74 = t6 * t6; /* link j3: motion */
+    const puma560_real_t t75 = t74 + t58; /* link j4: motion */
+    const puma560_real_t t76 = t5 * t63 + t2 * t66; /* link j3: motion */
+    /* link j4: motion */
     const puma560_real_t t77 = t76 + (PUMA560_C(-0.0203) * t8 + PUMA560_C(-0.4318) * t75);
-    const puma560_real_t t78 = t20 * t73 + t19 * t77;
+    const puma560_real_t t78 = t20 * t73 + t19 * t77; /* link j5: motion */
+    /* link j6: force and moment */
     const puma560_real_t t79 = t54 - parameters[YZ6] * (t55 - t56) - parameters[MY6] * t78;
     const puma560_real_t t80 = t43 + t44;
     const puma560_real_t t81 = t52 - t51;
     const puma560_real_t t82 = t47 * (parameters[XX6R] - parameters[ZZ6]) + parameters[XY6] * t80
         + parameters[YZ6] * t81;
-    const puma560_real_t t83 = t46 * t46;
+    const puma560_real_t t83 = t46 * t46; /* link j6: motion */
+    /* link j6: force and moment */
     const puma560_real_t t84 = t82 + parameters[XZ6] * (t83 - t56) + parameters[MX6] * t78;
-    const puma560_real_t t85 = t50 + t51;
+    const puma560_real_t t85 = t50 + t51; /* link j6: motion */
     const puma560_real_t t86 = t18 - t23;
+    /* link j5: force and moment */
     const puma560_real_t t87 = parameters[ZZ5R] * t36 - parameters[XX5R] * t37 + parameters[XY5] * t85
         + parameters[XZ5] * t86;
-    const puma560_real_t t88 = t22 * t22;
+    const puma560_real_t t88 = t22 * t22; /* link j5: motion */
     const puma560_real_t t89 = t35 * t35;
-    const puma560_real_t t90 = t13 * t68 + t9 * t72;
+    const puma560_real_t t90 = t13 * t68 + t9 * t72; /* link j4: motion */
+    /* link j6: what it passes on */
     const puma560_real_t t91 = t87 + parameters[YZ5] * (t88 - t89) - parameters[MY5R] * t90 + (t25 * t84
         - t39 * t79);
-    const puma560_real_t t92 = t19 * t73 - t20 * t77;
+    const puma560_real_t t92 = t19 * t73 - t20 * t77; /* link j5: motion */
+    /* link j6: force and moment */
     const puma560_real_t t93 = parameters[MX6] * (t25 * t92 + t39 * t90) + parameters[MY6] * (t39 * t92
         - t25 * t90);
     const puma560_real_t t94 = parameters[ZZ6] * t51 - parameters[XX6R] * t52 + parameters[YZ6] * t45
         - parameters[XZ6] * t40;
     const puma560_real_t t95 = t94 + parameters[XY6] * (t83 - t55) + t93;
+    /* link j5: force and moment */
     const puma560_real_t t96 = t50 * (parameters[ZZ5R] - parameters[XX5R]) - parameters[XY5] * t38
         + parameters[YZ5] * t24;
-    const puma560_real_t t97 = t21 * t21;
+    const puma560_real_t t97 = t21 * t21; /* link j5: motion */
+    /* link j6: what it passes on */
     const puma560_real_t t98 = t96 + parameters[XZ5] * (t89 - t97) + parameters[MX5] * t90 + t95;
-    const puma560_real_t t99 = t17 - t18;
+    const puma560_real_t t99 = t17 - t18; /* link j5: motion */
     const puma560_real_t t100 = t32 + t31;
+    /* link j4: force and moment */
     const puma560_real_t t101 = parameters[XX4R] * t29 + parameters[ZZ4R] * t28 - parameters[XY4] * t99
         - parameters[XZ4] * t100;
-    const puma560_real_t t102 = t27 * t27;
+    const puma560_real_t t102 = t27 * t27; /* link j4: motion */
     const puma560_real_t t103 = t16 * t16;
+    /* link j5: what it passes on */
     const puma560_real_t t104 = t101 - parameters[YZ4] * (t102 - t103) - parameters[MY4R] * t77 - (t19 * t91
         - t20 * t98);
+    /* link j5: force and moment */
     const puma560_real_t t105 = parameters[ZZ5R] * t18 + parameters[XX5R] * t23 + parameters[YZ5] * t49
         - parameters[XZ5] * t34;
     const puma560_real_t t106 = t105 + parameters[XY5] * (t97 - t88) + (parameters[MX5] * t78
         + parameters[MY5R] * t92);
-    const puma560_real_t t107 = t106 + (t25 * t79 + t39 * t84);
+    const puma560_real_t t107 = t106 + (t25 * t79 + t39 * t84); /* link j6: what it passes on */
+    /* link j4: force and moment */
     const puma560_real_t t108 = t17 * (parameters[XX4R] - parameters[ZZ4R]) + parameters[XY4] * t30
         + parameters[YZ4] * t33;
-    const puma560_real_t t109 = t15 * t15;
+    const puma560_real_t t109 = t15 * t15; /* link j4: motion */
+    /* link j5: what it passes on */
     const puma560_real_t t110 = t108 + parameters[XZ4] * (t109 - t103) + parameters[MX4] * t77 + t107;
+    /* link j6: force and moment */
     const puma560_real_t t111 = parameters[MX6] * (t55 + t56) - parameters[MY6] * t81;
     const puma560_real_t t112 = parameters[MX6] * t53 - parameters[MY6] * (t83 + t56);
+    /* link j6: what it passes on */
     const puma560_real_t t113 = parameters[MX5] * (t88 + t89) + parameters[MY5R] * t24 + (t39 * t111
         + t25 * t112);
     const puma560_real_t t114 = parameters[MY5R] * (t97 + t89) - parameters[MX5] * t86
         + (parameters[MX6] * t48 + parameters[MY6] * t80);
+    /* link j5: what it passes on */
     const puma560_real_t t115 = parameters[MY4R] * t33 - parameters[MX4] * (t102 + t103) + (t20 * t114
         - t19 * t113);
+    /* link j6: what it passes on */
     const puma560_real_t t116 = parameters[MX5] * t85 + parameters[MY5R] * t38 - (t25 * t111 - t39 * t112);
+    /* link j5: what it passes on */
     const puma560_real_t t117 = parameters[MX4] * t100 - parameters[MY4R] * (t109 + t103) + t116;
-    const puma560_real_t t118 = t13 * t115 + t9 * t117;
-    const puma560_real_t t119 = PUMA560_C(2.0) * t32;
+    const puma560_real_t t118 = t13 * t115 + t9 * t117; /* link j4: what it passes on */
+    const puma560_real_t t119 = PUMA560_C(2.0) * t32; /* link j4: motion */
+    /* link j3: force and moment */
     const puma560_real_t t120 = parameters[XX3R] * t11 + parameters[ZZ3R] * t11 + parameters[XY3R] * t119
         - parameters[XZ3] * t8;
+    /* link j4: what it passes on */
     const puma560_real_t t121 = t120 + parameters[YZ3] * (t57 - t58) + parameters[MY3R] * t71 + (t13 * t110
         - t9 * t104 + PUMA560_C(-0.4318) * t118);
+    /* link j4: force and moment */
     const puma560_real_t t122 = parameters[ZZ4R] * t32 - parameters[XX4R] * t31 - parameters[YZ4] * t14
         - parameters[XZ4] * t26;
     const puma560_real_t t123 = t122 + parameters[XY4] * (t109 - t102) + (parameters[MX4] * t90
         + parameters[MY4R] * t73);
-    const puma560_real_t t124 = t123 + (t20 * t91 + t19 * t98);
+    const puma560_real_t t124 = t123 + (t20 * t91 + t19 * t98); /* link j5: what it passes on */
+    /* link j3: force and moment */
     const puma560_real_t t125 = t32 * (parameters[XX3R] - parameters[ZZ3R]) + parameters[XY3R] * t12
         - parameters[YZ3] * t8;
+    /* link j4: what it passes on */
     const puma560_real_t t126 = t125 + parameters[XZ3] * (t74 - t58) + parameters[MX3R] * t71 - (t124
         - PUMA560_C(-0.0203) * t118);
     const puma560_real_t t127 = t9 * t115 - t13 * t117;
     const puma560_real_t t128 = t127 - (parameters[MX3R] * t59 + parameters[MY3R] * t8);
+    /* link j5: what it passes on */
     const puma560_real_t t129 = parameters[MX4] * t99 + parameters[MY4R] * t30 + (t20 * t113 + t19 * t114);
+    /* link j4: what it passes on */
     const puma560_real_t t130 = parameters[MX3R] * t8 + parameters[MY3R] * t75 + t129;
-    const puma560_real_t t131 = t2 * t130 - t5 * t128;
-    const puma560_real_t t132 = dq[1] * t4;
+    const puma560_real_t t131 = t2 * t130 - t5 * t128; /* link j3: what it passes on */
+    const puma560_real_t t132 = dq[1] * t4; /* link j2: motion */
+    /* link j2: force and moment */
     const puma560_real_t t133 = parameters[XY2] * (PUMA560_C(2.0) * t70) - (parameters[XX2R] * t132
         + parameters[ZZ2R] * t132);
+    /* link j3: what it passes on */
     const puma560_real_t t134 = t133 + parameters[XZ2R] * t64 + parameters[YZ2] * (t60 - t61) + (t2 * t121
         + t5 * t126 + PUMA560_C(0.1254) * t131);
     const puma560_real_t t135 = PUMA560_C(0.1254) * (t2 * t128 + t5 * t130)
         + PUMA560_C(0.4318) * (parameters[MX3R] * t119 + parameters[MY3R] * t12 + t118);
+    /* link j2: force and moment */
     const puma560_real_t t136 = t70 * (parameters[ZZ2R] - parameters[XX2R])
         + parameters[XY2] * (PUMA560_C(-2.0) * t132) - parameters[YZ2] * t64;
+    /* link j3: what it passes on */
     const puma560_real_t t137 = t136 + parameters[XZ2R] * (t61 - t69) + (t5 * t121 - t2 * t126 + t135);
-    const puma560_real_t t138 = puma560_sign(dq[0]);
+    const puma560_real_t t138 = puma560_sign(dq[0]); /* joint j1: coulomb_friction */
     const puma560_real_t
         t139 = PUMA560_C(4.3478260869565215) * (parameters[FV1] * (PUMA560_C(-62.6111) * dq[0])
         - parameters[FC1] * t138) + PUMA560_C(0.06944177768728742) * (t0 * t134 + t3 * t137);
     out[0] = t139;
+    /* link j4: what it passes on */
     const puma560_real_t t140 = t13 * t104 + t9 * t110 + (PUMA560_C(-0.0203) * t129
         + PUMA560_C(-0.4318) * t127);
+    /* link j3: force and moment */
     const puma560_real_t t141 = parameters[XX3R] * t8 + parameters[XY3R] * (t74 - t57)
         + (parameters[MX3R] * t76 + parameters[MY3R] * t67);
-    const puma560_real_t t142 = t141 + t140;
+    const puma560_real_t t142 = t141 + t140; /* link j4: what it passes on */
+    /* link j2: force and moment */
     const puma560_real_t t143 = parameters[XY2] * (t69 - t60) - parameters[XX2R] * t64
         + (parameters[MX2R] * t65 + parameters[MY2] * t62);
-    const puma560_real_t t144 = puma560_sign(dq[1]);
+    const puma560_real_t t144 = puma560_sign(dq[1]); /* joint j2: coulomb_friction */
     const puma560_real_t
         t145 = PUMA560_C(4.3478260869565215) * (parameters[FV2] * (PUMA560_C(107.815) * dq[1])
         + parameters[FC2] * t144) + PUMA560_C(0.04032672714331514) * (t143 + (t142
         + PUMA560_C(-0.4318) * t131));
     out[1] = t145;
-    const puma560_real_t t146 = puma560_sign(dq[2]);
+    const puma560_real_t t146 = puma560_sign(dq[2]); /* joint j3: coulomb_friction */
     const puma560_real_t
         t147 = PUMA560_C(4.3478260869565215) * (parameters[FV3] * (PUMA560_C(-53.7063) * dq[2])
         - parameters[FC3] * t146) + PUMA560_C(-0.08095560645504385) * t142;
     out[2] = t147;
-    const puma560_real_t t148 = puma560_sign(dq[3]);
+    const puma560_real_t t148 = puma560_sign(dq[3]); /* joint j4: coulomb_friction */
     const puma560_real_t
         t149 = PUMA560_C(14.285714285714285) * (parameters[FV4] * (PUMA560_C(76.0364) * dq[3])
         + parameters[FC4] * t148) + PUMA560_C(0.18787994020908783) * t124;
     out[3] = t149;
-    const puma560_real_t t150 = puma560_sign(dq[4]);
+    const puma560_real_t t150 = puma560_sign(dq[4]); /* joint j5: coulomb_friction */
     const puma560_real_t t151 = PUMA560_C(14.285714285714285) * (parameters[FV5] * (PUMA560_C(71.923) * dq[4])
         + parameters[FC5] * t150) + PUMA560_C(0.19862511694053758) * t107;
     out[4] = t151;
-    const puma560_real_t t152 = puma560_sign(dq[5]);
+    const puma560_real_t t152 = puma560_sign(dq[5]); /* joint j6: coulomb_friction */
     const puma560_real_t t153 = PUMA560_C(14.285714285714285) * (parameters[FV6] * (PUMA560_C(76.686) * dq[5])
         + parameters[FC6] * t152) + PUMA560_C(0.1862884266452062) * t95;
     out[5] = t153;

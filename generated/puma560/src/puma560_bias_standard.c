@@ -6,7 +6,7 @@
  * Arm puma560, description e8eb13fe224405b2.
  * SPDX-License-Identifier: 0BSD
  *
- * Operations: 578 (307 mul, 271 add, 0 neg), 10 trig, 6 other.
+ * Operations: 578 (307 mul, 271 add, 0 neg), 10 trig, 6 other calls (sign, select and the like).
  *
  * @param[in]   q           [6]   [rad]    joint coordinates; norm at most 10000
  * @param[in]   dq          [6]   [rad/s]  joint velocities; norm at most 100000
@@ -105,11 +105,11 @@
  */
 #include "puma560_private.h"
 
-#if PUMA560_GENERATION != 0xAC9DC6F4UL
+#if PUMA560_GENERATION != 0x0486C622UL
 #error "puma560.h and puma560_bias_standard.c are of different generations: generate the arm again"
 #endif
 
-int puma560_bias_standard(
+puma560_status_t puma560_bias_standard(
     const puma560_real_t q[PUMA560_N_JOINTS],
     const puma560_real_t dq[PUMA560_N_JOINTS],
     const puma560_real_t parameters[PUMA560_N_STANDARD_PARAMETERS],
@@ -119,7 +119,7 @@ int puma560_bias_standard(
         M2, XX3, XY3, XZ3, YY3, YZ3, ZZ3, MX3, MY3, MZ3, M3, XX4, XY4, XZ4, YY4, YZ4, ZZ4, MX4, MY4, MZ4, M4,
         XX5, XY5, XZ5, YY5, YZ5, ZZ5, MX5, MY5, MZ5, M5, XX6, XY6, XZ6, YY6, YZ6, ZZ6, MX6, MY6, MZ6, M6, FV1,
         FC1, IA1, FV2, FC2, IA2, FV3, FC3, IA3, FV4, FC4, IA4, FV5, FC5, IA5, FV6, FC6, IA6 };
-    int status = PUMA560_STATUS_OK;
+    puma560_status_t status = PUMA560_STATUS_OK;
 
     if (!puma560_within_joints(q, PUMA560_C(1.0e8))
         || !puma560_within_joints(dq, PUMA560_C(1.0e10))
@@ -141,36 +141,36 @@ int puma560_bias_standard(
     PUMA560_SINCOS(q[4], &t20, &t19);
     puma560_real_t t25, t39;
     PUMA560_SINCOS(q[5], &t25, &t39);
-    const puma560_real_t t1 = t0 * dq[0];
+    const puma560_real_t t1 = t0 * dq[0]; /* link j2: motion */
     const puma560_real_t t4 = t3 * dq[0];
-    const puma560_real_t t6 = t2 * t1 + t5 * t4;
+    const puma560_real_t t6 = t2 * t1 + t5 * t4; /* link j3: motion */
     const puma560_real_t t7 = t5 * t1 - t2 * t4;
     const puma560_real_t t8 = t6 * t7;
     const puma560_real_t t10 = dq[1] + dq[2];
     const puma560_real_t t11 = t10 * t7;
-    const puma560_real_t t12 = PUMA560_C(-2.0) * t11;
+    const puma560_real_t t12 = PUMA560_C(-2.0) * t11; /* link j4: motion */
     const puma560_real_t t14 = t9 * t8 - t13 * t12;
     const puma560_real_t t15 = t13 * t10 + t9 * t6;
     const puma560_real_t t16 = dq[3] + t7;
     const puma560_real_t t17 = t15 * t16;
     const puma560_real_t t18 = t14 - t17;
-    const puma560_real_t t21 = t19 * t15 - t20 * t16;
+    const puma560_real_t t21 = t19 * t15 - t20 * t16; /* link j5: motion */
     const puma560_real_t t22 = t20 * t15 + t19 * t16;
     const puma560_real_t t23 = t21 * t22;
-    const puma560_real_t t24 = t18 + t23;
-    const puma560_real_t t26 = t13 * t8 + t9 * t12;
+    const puma560_real_t t24 = t18 + t23; /* link j6: motion */
+    const puma560_real_t t26 = t13 * t8 + t9 * t12; /* link j4: motion */
     const puma560_real_t t27 = t9 * t10 - t13 * t6;
     const puma560_real_t t28 = t27 * t16;
     const puma560_real_t t29 = t26 + t28;
-    const puma560_real_t t30 = t28 + t29;
-    const puma560_real_t t31 = t15 * t27;
-    const puma560_real_t t32 = t10 * t6;
-    const puma560_real_t t33 = t31 - t32;
+    const puma560_real_t t30 = t28 + t29; /* link j5: motion */
+    const puma560_real_t t31 = t15 * t27; /* link j4: motion */
+    const puma560_real_t t32 = t10 * t6; /* link j3: motion */
+    const puma560_real_t t33 = t31 - t32; /* link j5: motion */
     const puma560_real_t t34 = t20 * t33 + t19 * t30;
     const puma560_real_t t35 = dq[4] + t27;
     const puma560_real_t t36 = t22 * t35;
     const puma560_real_t t37 = t34 - t36;
-    const puma560_real_t t38 = t37 - t36;
+    const puma560_real_t t38 = t37 - t36; /* link j6: motion */
     const puma560_real_t t40 = t25 * t24 + t39 * t38;
     const puma560_real_t t41 = t39 * t35 - t25 * t21;
     const puma560_real_t t42 = dq[5] + t22;
@@ -180,176 +180,216 @@ int puma560_bias_standard(
     const puma560_real_t t46 = t39 * t21 + t25 * t35;
     const puma560_real_t t47 = t46 * t42;
     const puma560_real_t t48 = t45 + t47;
-    const puma560_real_t t49 = t47 + t48;
+    const puma560_real_t t49 = t47 + t48; /* link j6: force and moment */
     const puma560_real_t t50 = parameters[XX6] * t44 - t43 * (parameters[YY6] - parameters[ZZ6])
         - parameters[XY6] * t49;
-    const puma560_real_t t51 = t20 * t30 - t19 * t33;
+    const puma560_real_t t51 = t20 * t30 - t19 * t33; /* link j5: motion */
     const puma560_real_t t52 = t21 * t35;
     const puma560_real_t t53 = t51 + t52;
-    const puma560_real_t t54 = t46 * t41;
-    const puma560_real_t t55 = t53 + t54;
-    const puma560_real_t t56 = t41 * t41;
+    const puma560_real_t t54 = t46 * t41; /* link j6: motion */
+    const puma560_real_t t55 = t53 + t54; /* link j6: force and moment */
+    const puma560_real_t t56 = t41 * t41; /* link j6: motion */
     const puma560_real_t t57 = t42 * t42;
-    const puma560_real_t t58 = t7 * t7;
+    const puma560_real_t t58 = t7 * t7; /* link j3: motion */
     const puma560_real_t t59 = t10 * t10;
-    const puma560_real_t t60 = t59 + t58;
-    const puma560_real_t t61 = t4 * t4;
+    const puma560_real_t t60 = t59 + t58; /* link j4: motion */
+    const puma560_real_t t61 = t4 * t4; /* link j2: motion */
     const puma560_real_t t62 = dq[1] * dq[1];
     const puma560_real_t t63 = PUMA560_C(9.81) * t0;
-    const puma560_real_t t64 = t63 + PUMA560_C(0.4318) * (t61 + t62);
-    const puma560_real_t t65 = t1 * t4;
+    const puma560_real_t t64 = t63 + PUMA560_C(0.4318) * (t61 + t62); /* link j3: columns */
+    const puma560_real_t t65 = t1 * t4; /* link j2: motion */
     const puma560_real_t t66 = PUMA560_C(9.81) * t3;
-    const puma560_real_t t67 = t66 + PUMA560_C(-0.4318) * t65;
+    const puma560_real_t t67 = t66 + PUMA560_C(-0.4318) * t65; /* link j3: motion */
     const puma560_real_t t68 = t2 * t64 + t5 * t67;
-    const puma560_real_t t69 = t68 + (PUMA560_C(0.0203) * t60 + PUMA560_C(0.4318) * t8);
-    const puma560_real_t t70 = t1 * t1;
+    const puma560_real_t t69 = t68 + (PUMA560_C(0.0203) * t60 + PUMA560_C(0.4318) * t8); /* link j4: motion */
+    const puma560_real_t t70 = t1 * t1; /* link j2: motion */
     const puma560_real_t t71 = dq[1] * t1;
+    /* link j3: motion */
     const puma560_real_t t72 = PUMA560_C(0.1254) * (t70 + t61) + PUMA560_C(0.8636) * t71;
+    /* link j4: motion */
     const puma560_real_t t73 = t72 + (PUMA560_C(0.0406) * t32 - PUMA560_C(0.8636) * t11);
     const puma560_real_t t74 = t9 * t69 - t13 * t73;
-    const puma560_real_t t75 = t6 * t6;
-    const puma560_real_t t76 = t59 + t75;
-    const puma560_real_t t77 = t2 * t67 - t5 * t64;
-    const puma560_real_t t78 = t77 + (PUMA560_C(0.0203) * t8 + PUMA560_C(0.4318) * t76);
-    const puma560_real_t t79 = t19 * t74 + t20 * t78;
-    const puma560_real_t t80 = t13 * t69 + t9 * t73;
-    const puma560_real_t t81 = t25 * t79 + t39 * t80;
-    const puma560_real_t t82 = t19 * t78 - t20 * t74;
+    const puma560_real_t t75 = t6 * t6; /* link j3: motion */
+    const puma560_real_t t76 = t59 + t75; /* link j4: motion */
+    const puma560_real_t t77 = t2 * t67 - t5 * t64; /* link j3: motion */
+    const puma560_real_t t78 = t77 + (PUMA560_C(0.0203) * t8 + PUMA560_C(0.4318) * t76); /* link j4: motion */
+    const puma560_real_t t79 = t19 * t74 + t20 * t78; /* link j5: motion */
+    const puma560_real_t t80 = t13 * t69 + t9 * t73; /* link j4: motion */
+    const puma560_real_t t81 = t25 * t79 + t39 * t80; /* link j6: motion */
+    const puma560_real_t t82 = t19 * t78 - t20 * t74; /* link j5: motion */
+    /* link j6: force and moment */
     const puma560_real_t t83 = t50 - parameters[XZ6] * t55 - parameters[YZ6] * (t56 - t57)
         + (parameters[MY6] * t82 + parameters[MZ6] * t81);
     const puma560_real_t t84 = t43 + t44;
     const puma560_real_t t85 = t47 * (parameters[XX6] - parameters[ZZ6]) - parameters[YY6] * t48
         + parameters[XY6] * t84;
     const puma560_real_t t86 = t54 - t53;
-    const puma560_real_t t87 = t46 * t46;
+    const puma560_real_t t87 = t46 * t46; /* link j6: motion */
     const puma560_real_t t88 = t39 * t79 - t25 * t80;
+    /* link j6: force and moment */
     const puma560_real_t t89 = t85 + parameters[YZ6] * t86 + parameters[XZ6] * (t87 - t57)
         + (parameters[MZ6] * t88 - parameters[MX6] * t82);
-    const puma560_real_t t90 = t52 + t53;
+    const puma560_real_t t90 = t52 + t53; /* link j6: motion */
+    /* link j5: force and moment */
     const puma560_real_t t91 = t36 * (parameters[ZZ5] - parameters[YY5]) - parameters[XX5] * t37
         + parameters[XY5] * t90;
-    const puma560_real_t t92 = t18 - t23;
-    const puma560_real_t t93 = t22 * t22;
+    const puma560_real_t t92 = t18 - t23; /* link j6: motion */
+    const puma560_real_t t93 = t22 * t22; /* link j5: motion */
     const puma560_real_t t94 = t35 * t35;
+    /* link j5: force and moment */
     const puma560_real_t t95 = t91 + parameters[XZ5] * t92 + parameters[YZ5] * (t93 - t94)
         + (parameters[MZ5] * t82 - parameters[MY5] * t80);
-    const puma560_real_t t96 = t95 + (t25 * t89 - t39 * t83);
+    const puma560_real_t t96 = t95 + (t25 * t89 - t39 * t83); /* link j6: what it passes on */
+    /* link j5: force and moment */
     const puma560_real_t t97 = parameters[YY5] * t53 + t52 * (parameters[ZZ5] - parameters[XX5])
         - parameters[XY5] * t38;
-    const puma560_real_t t98 = t21 * t21;
+    const puma560_real_t t98 = t21 * t21; /* link j5: motion */
+    /* link j5: force and moment */
     const puma560_real_t t99 = t97 + parameters[YZ5] * t24 + parameters[XZ5] * (t94 - t98)
         + (parameters[MX5] * t80 - parameters[MZ5] * t79);
+    /* link j6: force and moment */
     const puma560_real_t t100 = parameters[ZZ6] * t53 - (parameters[XX6] - parameters[YY6]) * t54
         + parameters[YZ6] * t45;
     const puma560_real_t t101 = t100 - parameters[XZ6] * t40 + parameters[XY6] * (t87 - t56)
         + (parameters[MX6] * t81 + parameters[MY6] * t88);
-    const puma560_real_t t102 = t99 + t101;
-    const puma560_real_t t103 = t17 - t18;
+    const puma560_real_t t102 = t99 + t101; /* link j6: what it passes on */
+    const puma560_real_t t103 = t17 - t18; /* link j5: motion */
+    /* link j4: force and moment */
     const puma560_real_t t104 = parameters[XX4] * t29 - t28 * (parameters[YY4] - parameters[ZZ4])
         - parameters[XY4] * t103;
-    const puma560_real_t t105 = t32 + t31;
-    const puma560_real_t t106 = t27 * t27;
+    const puma560_real_t t105 = t32 + t31; /* link j5: motion */
+    const puma560_real_t t106 = t27 * t27; /* link j4: motion */
     const puma560_real_t t107 = t16 * t16;
+    /* link j4: force and moment */
     const puma560_real_t t108 = t104 - parameters[XZ4] * t105 - parameters[YZ4] * (t106 - t107)
         + (parameters[MY4] * t78 + parameters[MZ4] * t80);
-    const puma560_real_t t109 = t108 - (t19 * t96 - t20 * t102);
+    const puma560_real_t t109 = t108 - (t19 * t96 - t20 * t102); /* link j5: what it passes on */
+    /* link j5: force and moment */
     const puma560_real_t t110 = parameters[ZZ5] * t18 + t23 * (parameters[XX5] - parameters[YY5])
         + parameters[YZ5] * t51;
     const puma560_real_t t111 = t110 - parameters[XZ5] * t34 + parameters[XY5] * (t98 - t93)
         + (parameters[MY5] * t79 - parameters[MX5] * t82);
-    const puma560_real_t t112 = t111 + (t25 * t83 + t39 * t89);
+    const puma560_real_t t112 = t111 + (t25 * t83 + t39 * t89); /* link j6: what it passes on */
+    /* link j4: force and moment */
     const puma560_real_t t113 = parameters[YY4] * t18 + t17 * (parameters[XX4] - parameters[ZZ4])
         + parameters[XY4] * t30;
-    const puma560_real_t t114 = t15 * t15;
+    const puma560_real_t t114 = t15 * t15; /* link j4: motion */
+    /* link j4: force and moment */
     const puma560_real_t t115 = t113 + parameters[YZ4] * t33 + parameters[XZ4] * (t114 - t107)
         + (parameters[MZ4] * t74 - parameters[MX4] * t78);
-    const puma560_real_t t116 = t115 + t112;
+    const puma560_real_t t116 = t115 + t112; /* link j5: what it passes on */
+    /* link j6: force and moment */
     const puma560_real_t t117 = parameters[MX6] * (t56 + t57) - parameters[MY6] * t86 - parameters[MZ6] * t45;
     const puma560_real_t t118 = parameters[M6] * t88 + t117;
     const puma560_real_t t119 = parameters[MX6] * t55 - parameters[MY6] * (t87 + t57) + parameters[MZ6] * t40;
     const puma560_real_t t120 = parameters[M6] * t81 + t119;
+    /* link j5: force and moment */
     const puma560_real_t t121 = parameters[MX5] * (t93 + t94) + parameters[MY5] * t24 - parameters[MZ5] * t51;
+    /* link j6: what it passes on */
     const puma560_real_t t122 = parameters[M5] * t79 + t121 + (t39 * t118 + t25 * t120);
+    /* link j5: force and moment */
     const puma560_real_t t123 = parameters[MY5] * (t98 + t94) - parameters[MX5] * t92 - parameters[MZ5] * t34;
+    /* link j6: force and moment */
     const puma560_real_t t124 = parameters[MX6] * t49 + parameters[MY6] * t84 + parameters[MZ6] * (t87 + t56);
+    /* link j6: what it passes on */
     const puma560_real_t t125 = parameters[M5] * t82 + t123 + (parameters[M6] * t82 + t124);
+    /* link j4: force and moment */
     const puma560_real_t t126 = parameters[MY4] * t33 - parameters[MX4] * (t106 + t107)
         - parameters[MZ4] * t14;
+    /* link j5: what it passes on */
     const puma560_real_t t127 = t126 - parameters[M4] * t74 + (t20 * t125 - t19 * t122);
+    /* link j5: force and moment */
     const puma560_real_t t128 = parameters[MX5] * t90 + parameters[MY5] * t38 + parameters[MZ5] * (t98 + t93);
+    /* link j6: what it passes on */
     const puma560_real_t t129 = parameters[M5] * t80 + t128 - (t25 * t118 - t39 * t120);
+    /* link j4: force and moment */
     const puma560_real_t t130 = parameters[MX4] * t105 - parameters[MY4] * (t114 + t107)
         + parameters[MZ4] * t26;
-    const puma560_real_t t131 = parameters[M4] * t80 + t130 + t129;
-    const puma560_real_t t132 = t13 * t127 + t9 * t131;
-    const puma560_real_t t133 = PUMA560_C(2.0) * t32;
+    const puma560_real_t t131 = parameters[M4] * t80 + t130 + t129; /* link j5: what it passes on */
+    const puma560_real_t t132 = t13 * t127 + t9 * t131; /* link j4: what it passes on */
+    const puma560_real_t t133 = PUMA560_C(2.0) * t32; /* link j4: motion */
+    /* link j3: force and moment */
     const puma560_real_t t134 = parameters[XX3] * t11 + t11 * (parameters[ZZ3] - parameters[YY3])
         + parameters[XY3] * t133;
     const puma560_real_t t135 = t134 - parameters[XZ3] * t8 + parameters[YZ3] * (t58 - t59)
         + (parameters[MZ3] * t77 - parameters[MY3] * t72);
+    /* link j4: what it passes on */
     const puma560_real_t t136 = t135 + (t13 * t116 - t9 * t109 + PUMA560_C(-0.4318) * t132);
+    /* link j4: force and moment */
     const puma560_real_t t137 = parameters[ZZ4] * t32 + t31 * (parameters[YY4] - parameters[XX4])
         - parameters[YZ4] * t14;
     const puma560_real_t t138 = t137 - parameters[XZ4] * t26 + parameters[XY4] * (t114 - t106)
         + (parameters[MX4] * t80 + parameters[MY4] * t74);
-    const puma560_real_t t139 = t138 + (t20 * t96 + t19 * t102);
+    const puma560_real_t t139 = t138 + (t20 * t96 + t19 * t102); /* link j5: what it passes on */
+    /* link j3: force and moment */
     const puma560_real_t t140 = parameters[YY3] * t32 - t32 * (parameters[XX3] - parameters[ZZ3])
         - parameters[XY3] * t12;
     const puma560_real_t t141 = t140 + parameters[YZ3] * t8 + parameters[XZ3] * (t59 - t75)
         - (parameters[MZ3] * t68 - parameters[MX3] * t72);
-    const puma560_real_t t142 = t141 + (t139 - PUMA560_C(-0.0203) * t132);
+    const puma560_real_t t142 = t141 + (t139 - PUMA560_C(-0.0203) * t132); /* link j4: what it passes on */
     const puma560_real_t t143 = t9 * t127 - t13 * t131;
     const puma560_real_t t144 = t143 - (parameters[M3] * t68 + (parameters[MX3] * t60
         + parameters[MY3] * t8));
+    /* link j4: force and moment */
     const puma560_real_t t145 = parameters[MX4] * t103 + parameters[MY4] * t30 + parameters[MZ4] * (t114
         + t106);
+    /* link j5: what it passes on */
     const puma560_real_t t146 = parameters[M4] * t78 + t145 + (t20 * t122 + t19 * t125);
+    /* link j4: what it passes on */
     const puma560_real_t t147 = parameters[M3] * t77 + (parameters[MX3] * t8 + parameters[MY3] * t76) + t146;
-    const puma560_real_t t148 = t2 * t147 - t5 * t144;
-    const puma560_real_t t149 = dq[1] * t4;
+    const puma560_real_t t148 = t2 * t147 - t5 * t144; /* link j3: what it passes on */
+    const puma560_real_t t149 = dq[1] * t4; /* link j2: motion */
+    /* link j2: force and moment */
     const puma560_real_t t150 = t149 * (parameters[YY2] - parameters[ZZ2]) - t149 * parameters[XX2]
         + PUMA560_C(2.0) * t71 * parameters[XY2];
     const puma560_real_t t151 = t150 + t65 * parameters[XZ2] + (t61 - t62) * parameters[YZ2]
         + t66 * parameters[MZ2];
+    /* link j3: what it passes on */
     const puma560_real_t t152 = t151 + (t2 * t136 - t5 * t142 + PUMA560_C(0.1254) * t148);
+    /* link j3: force and moment */
     const puma560_real_t t153 = parameters[MX3] * t133 + parameters[MY3] * t12 + parameters[MZ3] * (t75
         + t58);
+    /* link j3: what it passes on */
     const puma560_real_t t154 = PUMA560_C(0.1254) * (t2 * t144 + t5 * t147)
         + PUMA560_C(0.4318) * (parameters[M3] * t72 + t153 + t132);
+    /* link j2: force and moment */
     const puma560_real_t t155 = t71 * parameters[YY2] + t71 * (parameters[ZZ2] - parameters[XX2])
         + PUMA560_C(-2.0) * t149 * parameters[XY2];
     const puma560_real_t t156 = t155 - t65 * parameters[YZ2] + (t62 - t70) * parameters[XZ2]
         - t63 * parameters[MZ2];
-    const puma560_real_t t157 = t3 * (t156 + (t5 * t136 + t2 * t142 + t154));
-    const puma560_real_t t158 = puma560_sign(dq[0]);
+    const puma560_real_t t157 = t3 * (t156 + (t5 * t136 + t2 * t142 + t154)); /* link j2: what it passes on */
+    const puma560_real_t t158 = puma560_sign(dq[0]); /* joint j1: coulomb_friction */
     const puma560_real_t t159 = PUMA560_C(4.3478260869565215) * (PUMA560_C(-62.6111) * dq[0] * parameters[FV1]
         - t158 * parameters[FC1]) + PUMA560_C(0.06944177768728742) * (t0 * t152 + t157);
     out[0] = t159;
+    /* link j4: what it passes on */
     const puma560_real_t t160 = t13 * t109 + t9 * t116 + (PUMA560_C(-0.0203) * t146
         + PUMA560_C(-0.4318) * t143);
+    /* link j3: force and moment */
     const puma560_real_t t161 = t8 * (parameters[XX3] - parameters[YY3]) + parameters[XY3] * (t75 - t58)
         + (parameters[MY3] * t68 - parameters[MX3] * t77);
-    const puma560_real_t t162 = t161 + t160;
+    const puma560_real_t t162 = t161 + t160; /* link j4: what it passes on */
+    /* link j2: force and moment */
     const puma560_real_t t163 = t65 * (parameters[YY2] - parameters[XX2]) + (t70 - t61) * parameters[XY2]
         + (t63 * parameters[MY2] - t66 * parameters[MX2]);
-    const puma560_real_t t164 = puma560_sign(dq[1]);
+    const puma560_real_t t164 = puma560_sign(dq[1]); /* joint j2: coulomb_friction */
     const puma560_real_t t165 = PUMA560_C(4.3478260869565215) * (PUMA560_C(107.815) * dq[1] * parameters[FV2]
         + t164 * parameters[FC2]) + PUMA560_C(0.04032672714331514) * (t163 + (t162
         + PUMA560_C(-0.4318) * t148));
     out[1] = t165;
-    const puma560_real_t t166 = puma560_sign(dq[2]);
+    const puma560_real_t t166 = puma560_sign(dq[2]); /* joint j3: coulomb_friction */
     const puma560_real_t t167 = PUMA560_C(4.3478260869565215) * (PUMA560_C(-53.7063) * dq[2] * parameters[FV3]
         - t166 * parameters[FC3]) + PUMA560_C(-0.08095560645504385) * t162;
     out[2] = t167;
-    const puma560_real_t t168 = puma560_sign(dq[3]);
+    const puma560_real_t t168 = puma560_sign(dq[3]); /* joint j4: coulomb_friction */
     const puma560_real_t t169 = PUMA560_C(14.285714285714285) * (PUMA560_C(76.0364) * dq[3] * parameters[FV4]
         + t168 * parameters[FC4]) + PUMA560_C(0.18787994020908783) * t139;
     out[3] = t169;
-    const puma560_real_t t170 = puma560_sign(dq[4]);
+    const puma560_real_t t170 = puma560_sign(dq[4]); /* joint j5: coulomb_friction */
     const puma560_real_t t171 = PUMA560_C(14.285714285714285) * (PUMA560_C(71.923) * dq[4] * parameters[FV5]
         + t170 * parameters[FC5]) + PUMA560_C(0.19862511694053758) * t112;
     out[4] = t171;
-    const puma560_real_t t172 = puma560_sign(dq[5]);
+    const puma560_real_t t172 = puma560_sign(dq[5]); /* joint j6: coulomb_friction */
     const puma560_real_t t173 = PUMA560_C(14.285714285714285) * (PUMA560_C(76.686) * dq[5] * parameters[FV6]
         + t172 * parameters[FC6]) + PUMA560_C(0.1862884266452062) * t101;
     out[5] = t173;

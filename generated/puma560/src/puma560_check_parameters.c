@@ -8,16 +8,16 @@
  */
 #include "puma560_private.h"
 
-#if PUMA560_GENERATION != 0xAC9DC6F4UL
+#if PUMA560_GENERATION != 0x0486C622UL
 #error "puma560.h and puma560_check_parameters.c are of different generations: generate the arm again"
 #endif
 
-int puma560_check_parameters(const puma560_real_t parameters[PUMA560_N_PARAMETERS])
+puma560_status_t puma560_check_parameters(const puma560_real_t parameters[PUMA560_N_PARAMETERS])
 {
     return puma560_within(parameters, 52, PUMA560_C(1.0e18)) ? PUMA560_STATUS_OK : PUMA560_STATUS_INPUT;
 }
 
-int puma560_check_parameters_standard(const puma560_real_t parameters[PUMA560_N_STANDARD_PARAMETERS])
+puma560_status_t puma560_check_parameters_standard(const puma560_real_t parameters[PUMA560_N_STANDARD_PARAMETERS])
 {
     return puma560_within(parameters, 78, PUMA560_C(1.0e18)) ? PUMA560_STATUS_OK : PUMA560_STATUS_INPUT;
 }

@@ -8,8 +8,8 @@
  *
  * Operations: 0 (0 mul, 0 add, 0 neg).
  *
- * @param[in]   q    [6]  [rad]            joint coordinates; norm at most 10000
- * @param[out]  out  [6]  [(N m) per (A)]  drive gains K
+ * @param[in]   q    [6]  [rad]        joint coordinates; norm at most 10000
+ * @param[out]  out  [6]  [N m per A]  drive gains K
  *
  * Coordinates:
  *
@@ -22,15 +22,15 @@
  */
 #include "puma560_private.h"
 
-#if PUMA560_GENERATION != 0xAC9DC6F4UL
+#if PUMA560_GENERATION != 0x0486C622UL
 #error "puma560.h and puma560_drive_gain.c are of different generations: generate the arm again"
 #endif
 
-int puma560_drive_gain(
+puma560_status_t puma560_drive_gain(
     const puma560_real_t q[PUMA560_N_JOINTS],
     puma560_real_t out[PUMA560_N_JOINTS])
 {
-    int status = PUMA560_STATUS_OK;
+    puma560_status_t status = PUMA560_STATUS_OK;
 
     if (!puma560_within_joints(q, PUMA560_C(1.0e8))) {
         status |= PUMA560_STATUS_INPUT;

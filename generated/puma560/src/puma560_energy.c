@@ -81,11 +81,11 @@
  */
 #include "puma560_private.h"
 
-#if PUMA560_GENERATION != 0xAC9DC6F4UL
+#if PUMA560_GENERATION != 0x0486C622UL
 #error "puma560.h and puma560_energy.c are of different generations: generate the arm again"
 #endif
 
-int puma560_energy(
+puma560_status_t puma560_energy(
     const puma560_real_t q[PUMA560_N_JOINTS],
     const puma560_real_t dq[PUMA560_N_JOINTS],
     const puma560_real_t parameters[PUMA560_N_PARAMETERS],
@@ -95,7 +95,7 @@ int puma560_energy(
     enum { ZZ1R = 0, XX2R, XY2, XZ2R, YZ2, ZZ2R, MX2R, MY2, XX3R, XY3R, XZ3, YZ3, ZZ3R, MX3R, MY3R, XX4R, XY4,
         XZ4, YZ4, ZZ4R, MX4, MY4R, XX5R, XY5, XZ5, YZ5, ZZ5R, MX5, MY5R, XX6R, XY6, XZ6, YZ6, ZZ6, MX6, MY6,
         FV1, FC1, FV2, FC2, FV3, FC3, IA3, FV4, FC4, IA4, FV5, FC5, IA5, FV6, FC6, IA6 };
-    int status = PUMA560_STATUS_OK;
+    puma560_status_t status = PUMA560_STATUS_OK;
 
     if (!puma560_within_joints(q, PUMA560_C(1.0e8))
         || !puma560_within_joints(dq, PUMA560_C(1.0e10))
@@ -118,9 +118,9 @@ int puma560_energy(
     PUMA560_SINCOS(q[4], &t37, &t36);
     puma560_real_t t49, t48;
     PUMA560_SINCOS(q[5], &t49, &t48);
-    const puma560_real_t t1 = t0 * dq[0];
+    const puma560_real_t t1 = t0 * dq[0]; /* link j2: motion */
     const puma560_real_t t4 = t3 * dq[0];
-    const puma560_real_t t6 = t2 * t1 + t5 * t4;
+    const puma560_real_t t6 = t2 * t1 + t5 * t4; /* link j3: motion */
     const puma560_real_t t7 = t5 * t1 - t2 * t4;
     const puma560_real_t t8 = dq[1] + dq[2];
     const puma560_real_t t9 = t6 * (parameters[XX3R] * t6 - parameters[XY3R] * t7 - parameters[XZ3] * t8);
@@ -132,6 +132,7 @@ int puma560_energy(
     const puma560_real_t t14 = t12 + t4 * (parameters[XY2] * t1 - parameters[YZ2] * dq[1]) + t13;
     const puma560_real_t t15 = PUMA560_C(0.5) * (dq[0] * (parameters[ZZ1R] * dq[0])) + PUMA560_C(0.5) * t14
         + PUMA560_C(0.5) * t11;
+    /* link j3: velocity of its origin */
     const puma560_real_t t16 = PUMA560_C(-0.4318) * dq[1] + PUMA560_C(-0.1254) * t1;
     const puma560_real_t t17 = PUMA560_C(0.1254) * t4;
     const puma560_real_t t18 = t2 * t16 - t5 * t17;
@@ -139,13 +140,14 @@ int puma560_energy(
     const puma560_real_t t20 = t2 * t17 + t5 * t16;
     const puma560_real_t t21 = parameters[MX3R] * (t7 * t19 - t8 * t18) + parameters[MY3R] * (t6 * t19
         + t8 * t20);
-    const puma560_real_t t24 = t22 * t6 + t23 * t8;
+    const puma560_real_t t24 = t22 * t6 + t23 * t8; /* link j4: motion */
     const puma560_real_t t25 = t22 * t8 - t23 * t6;
     const puma560_real_t t26 = dq[3] + t7;
     const puma560_real_t t27 = t24 * (parameters[XX4R] * t24 + parameters[XY4] * t25 - parameters[XZ4] * t26);
     const puma560_real_t t28 = t26 * (parameters[ZZ4R] * t26 - (parameters[XZ4] * t24
         + parameters[YZ4] * t25));
     const puma560_real_t t29 = t27 - t25 * (parameters[YZ4] * t26 - parameters[XY4] * t24) + t28;
+    /* link j4: velocity of its origin */
     const puma560_real_t t30 = t19 + (PUMA560_C(0.4318) * t6 + PUMA560_C(0.0203) * t7);
     const puma560_real_t t31 = t20 + PUMA560_C(0.4318) * t8;
     const puma560_real_t t32 = t23 * t31 + t22 * t30;
@@ -153,18 +155,18 @@ int puma560_energy(
     const puma560_real_t t34 = t22 * t31 - t23 * t30;
     const puma560_real_t t35 = parameters[MX4] * (t26 * t32 - t25 * t33) + parameters[MY4R] * (t24 * t33
         + t26 * t34);
-    const puma560_real_t t38 = t37 * t26 - t36 * t24;
+    const puma560_real_t t38 = t37 * t26 - t36 * t24; /* link j5: motion */
     const puma560_real_t t39 = t37 * t24 + t36 * t26;
     const puma560_real_t t40 = dq[4] + t25;
     const puma560_real_t t41 = t38 * (parameters[XX5R] * t38 + parameters[XY5] * t39 + parameters[XZ5] * t40);
     const puma560_real_t t42 = t40 * (parameters[XZ5] * t38 + parameters[YZ5] * t39 + parameters[ZZ5R] * t40);
     const puma560_real_t t43 = t41 + t39 * (parameters[XY5] * t38 + parameters[YZ5] * t40) + t42;
     const puma560_real_t t44 = t15 + t21 + PUMA560_C(0.5) * t29 + t35 + PUMA560_C(0.5) * t43;
-    const puma560_real_t t45 = t36 * t33 - t37 * t34;
+    const puma560_real_t t45 = t36 * t33 - t37 * t34; /* link j5: velocity of its origin */
     const puma560_real_t t46 = t36 * t34 + t37 * t33;
     const puma560_real_t t47 = parameters[MX5] * (t39 * t32 - t40 * t45) + parameters[MY5R] * (t40 * t46
         - t38 * t32);
-    const puma560_real_t t50 = t48 * t38 - t49 * t40;
+    const puma560_real_t t50 = t48 * t38 - t49 * t40; /* link j6: motion */
     const puma560_real_t t51 = t49 * t38 + t48 * t40;
     const puma560_real_t t52 = dq[5] + t39;
     const puma560_real_t t53 = t50 * (parameters[XY6] * t51 - parameters[XX6R] * t50 - parameters[XZ6] * t52);
@@ -181,15 +183,15 @@ int puma560_energy(
         + PUMA560_C(0.5) * (PUMA560_C(5172.917929) * parameters[IA5] * (dq[4] * dq[4]))
         + PUMA560_C(0.5) * (PUMA560_C(5880.742596000001) * parameters[IA6] * (dq[5] * dq[5]));
     kinetic[0] = t60;
-    const puma560_real_t t61 = PUMA560_C(-9.81) * t0;
+    const puma560_real_t t61 = PUMA560_C(-9.81) * t0; /* link j2: motion */
     const puma560_real_t t62 = PUMA560_C(-9.81) * t3;
-    const puma560_real_t t63 = t2 * t61 + t5 * t62;
+    const puma560_real_t t63 = t2 * t61 + t5 * t62; /* link j3: motion */
     const puma560_real_t t64 = t2 * t62 - t5 * t61;
     const puma560_real_t t65 = parameters[MX2R] * t61 + parameters[MY2] * t62 + (parameters[MX3R] * t63
         + parameters[MY3R] * t64);
-    const puma560_real_t t66 = t22 * t63;
+    const puma560_real_t t66 = t22 * t63; /* link j4: motion */
     const puma560_real_t t67 = t23 * t63;
-    const puma560_real_t t68 = t36 * t66 + t37 * t64;
+    const puma560_real_t t68 = t36 * t66 + t37 * t64; /* link j5: motion */
     const puma560_real_t t69 = parameters[MX5] * t68 + parameters[MY5R] * (t36 * t64 - t37 * t66);
     const puma560_real_t t70 = parameters[MX6] * (t48 * t68 - t49 * t67) - parameters[MY6] * (t49 * t68
         + t48 * t67);

@@ -106,11 +106,11 @@
  */
 #include "puma560_private.h"
 
-#if PUMA560_GENERATION != 0xAC9DC6F4UL
+#if PUMA560_GENERATION != 0x0486C622UL
 #error "puma560.h and puma560_energy_standard.c are of different generations: generate the arm again"
 #endif
 
-int puma560_energy_standard(
+puma560_status_t puma560_energy_standard(
     const puma560_real_t q[PUMA560_N_JOINTS],
     const puma560_real_t dq[PUMA560_N_JOINTS],
     const puma560_real_t parameters[PUMA560_N_STANDARD_PARAMETERS],
@@ -121,7 +121,7 @@ int puma560_energy_standard(
         M2, XX3, XY3, XZ3, YY3, YZ3, ZZ3, MX3, MY3, MZ3, M3, XX4, XY4, XZ4, YY4, YZ4, ZZ4, MX4, MY4, MZ4, M4,
         XX5, XY5, XZ5, YY5, YZ5, ZZ5, MX5, MY5, MZ5, M5, XX6, XY6, XZ6, YY6, YZ6, ZZ6, MX6, MY6, MZ6, M6, FV1,
         FC1, IA1, FV2, FC2, IA2, FV3, FC3, IA3, FV4, FC4, IA4, FV5, FC5, IA5, FV6, FC6, IA6 };
-    int status = PUMA560_STATUS_OK;
+    puma560_status_t status = PUMA560_STATUS_OK;
 
     if (!puma560_within_joints(q, PUMA560_C(1.0e8))
         || !puma560_within_joints(dq, PUMA560_C(1.0e10))
@@ -144,14 +144,15 @@ int puma560_energy_standard(
     PUMA560_SINCOS(q[4], &t42, &t41);
     puma560_real_t t56, t55;
     PUMA560_SINCOS(q[5], &t56, &t55);
-    const puma560_real_t t1 = t0 * dq[0];
+    const puma560_real_t t1 = t0 * dq[0]; /* link j2: motion */
     const puma560_real_t t4 = t3 * dq[0];
-    const puma560_real_t t6 = t2 * t1 + t5 * t4;
+    const puma560_real_t t6 = t2 * t1 + t5 * t4; /* link j3: motion */
     const puma560_real_t t7 = t2 * t4 - t5 * t1;
     const puma560_real_t t8 = dq[1] + dq[2];
     const puma560_real_t t9 = t6 * (parameters[XX3] * t6 + parameters[XY3] * t7 - t8 * parameters[XZ3]);
     const puma560_real_t t10 = t7 * (t8 * parameters[YZ3] - (parameters[XY3] * t6 + parameters[YY3] * t7));
     const puma560_real_t t11 = t8 * (t8 * parameters[ZZ3] - (parameters[XZ3] * t6 + parameters[YZ3] * t7));
+    /* link j3: velocity of its origin */
     const puma560_real_t t12 = PUMA560_C(0.4318) * dq[1] + PUMA560_C(0.1254) * t1;
     const puma560_real_t t13 = PUMA560_C(0.1254) * t4;
     const puma560_real_t t14 = t2 * t13 - t5 * t12;
@@ -168,13 +169,14 @@ int puma560_energy_standard(
         - t6 * t16);
     const puma560_real_t t23 = t21 + PUMA560_C(0.5) * (t9 - t10 + t11 + t17) + (t22
         + parameters[MZ3] * (t7 * t14 + t6 * t15));
+    /* link j4: velocity of its origin */
     const puma560_real_t t24 = t16 - (PUMA560_C(0.4318) * t6 + PUMA560_C(-0.0203) * t7);
     const puma560_real_t t26 = t14 + PUMA560_C(0.4318) * t8;
     const puma560_real_t t28 = t27 * t26 + t25 * t24;
     const puma560_real_t t29 = t25 * t26 - t27 * t24;
     const puma560_real_t t30 = t29 * t29;
     const puma560_real_t t31 = t15 + PUMA560_C(0.0203) * t8;
-    const puma560_real_t t32 = t25 * t8 + t27 * t6;
+    const puma560_real_t t32 = t25 * t8 + t27 * t6; /* link j4: motion */
     const puma560_real_t t33 = t27 * t8 - t25 * t6;
     const puma560_real_t t34 = dq[3] - t7;
     const puma560_real_t t35 = t32 * (parameters[XX4] * t32 + parameters[XY4] * t33 - parameters[XZ4] * t34);
@@ -185,22 +187,22 @@ int puma560_energy_standard(
     const puma560_real_t t39 = parameters[MX4] * (t34 * t29 + t33 * t31) + parameters[MY4] * (t34 * t28
         - t32 * t31);
     const puma560_real_t t40 = t23 + PUMA560_C(0.5) * t38 + (t39 + parameters[MZ4] * (t33 * t28 + t32 * t29));
-    const puma560_real_t t43 = t41 * t32 - t42 * t34;
+    const puma560_real_t t43 = t41 * t32 - t42 * t34; /* link j5: motion */
     const puma560_real_t t44 = t42 * t32 + t41 * t34;
     const puma560_real_t t45 = dq[4] + t33;
     const puma560_real_t t46 = t43 * (parameters[XX5] * t43 - parameters[XY5] * t44 - parameters[XZ5] * t45);
     const puma560_real_t t47 = t44 * (parameters[YY5] * t44 - parameters[XY5] * t43 + parameters[YZ5] * t45);
     const puma560_real_t t48 = t45 * (parameters[YZ5] * t44 - parameters[XZ5] * t43 + parameters[ZZ5] * t45);
-    const puma560_real_t t49 = t41 * t28 - t42 * t31;
+    const puma560_real_t t49 = t41 * t28 - t42 * t31; /* link j5: velocity of its origin */
     const puma560_real_t t50 = t42 * t28 + t41 * t31;
     const puma560_real_t t51 = t50 * t50;
     const puma560_real_t t52 = t46 + t47 + t48 + parameters[M5] * (t30 + (t49 * t49 + t51));
     const puma560_real_t t53 = parameters[MX5] * (t45 * t50 + t44 * t29) + parameters[MY5] * (t43 * t29
         + t45 * t49);
     const puma560_real_t t54 = t40 + PUMA560_C(0.5) * t52 + (t53 + parameters[MZ5] * (t43 * t50 - t44 * t49));
-    const puma560_real_t t57 = t55 * t49 - t56 * t29;
+    const puma560_real_t t57 = t55 * t49 - t56 * t29; /* link j6: velocity of its origin */
     const puma560_real_t t58 = t56 * t49 + t55 * t29;
-    const puma560_real_t t59 = t55 * t43 + t56 * t45;
+    const puma560_real_t t59 = t55 * t43 + t56 * t45; /* link j6: motion */
     const puma560_real_t t60 = t55 * t45 - t56 * t43;
     const puma560_real_t t61 = dq[5] + t44;
     const puma560_real_t t62 = t59 * (parameters[XX6] * t59 + parameters[XY6] * t60 - parameters[XZ6] * t61);
@@ -222,19 +224,19 @@ int puma560_energy_standard(
         + PUMA560_C(0.5) * (dq[4] * dq[4] * (PUMA560_C(5172.917929) * parameters[IA5]))
         + PUMA560_C(0.5) * (dq[5] * dq[5] * (PUMA560_C(5880.742596000001) * parameters[IA6]));
     kinetic[0] = t70;
-    const puma560_real_t t71 = PUMA560_C(-9.81) * t0;
+    const puma560_real_t t71 = PUMA560_C(-9.81) * t0; /* link j2: motion */
     const puma560_real_t t72 = PUMA560_C(-9.81) * t3;
-    const puma560_real_t t73 = t2 * t71 + t5 * t72;
-    const puma560_real_t t74 = t27 * t73;
+    const puma560_real_t t73 = t2 * t71 + t5 * t72; /* link j3: motion */
+    const puma560_real_t t74 = t27 * t73; /* link j4: motion */
     const puma560_real_t t75 = t25 * t73;
-    const puma560_real_t t76 = t2 * t72 - t5 * t71;
+    const puma560_real_t t76 = t2 * t72 - t5 * t71; /* link j3: motion */
     const puma560_real_t t77 = PUMA560_C(-4.235958) * t0;
     const puma560_real_t t78 = t77 + (PUMA560_C(0.0203) * t73 + PUMA560_C(0.4318) * t76);
     const puma560_real_t t79 = t74 * parameters[MX4] - t75 * parameters[MY4] + t76 * parameters[MZ4]
         + parameters[M4] * t78;
     const puma560_real_t t80 = PUMA560_C(9.81) * parameters[MZ1] + (t71 * parameters[MX2]
         + t72 * parameters[MY2]) + (t73 * parameters[MX3] + t76 * parameters[MY3] + parameters[M3] * t77);
-    const puma560_real_t t81 = t41 * t74 + t42 * t76;
+    const puma560_real_t t81 = t41 * t74 + t42 * t76; /* link j5: motion */
     const puma560_real_t t82 = t41 * t76 - t42 * t74;
     const puma560_real_t t83 = t81 * parameters[MX5] + t82 * parameters[MY5] + t75 * parameters[MZ5]
         + parameters[M5] * t78;

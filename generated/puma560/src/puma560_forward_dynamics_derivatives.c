@@ -7,7 +7,7 @@
  * Arm puma560, description e8eb13fe224405b2.
  * SPDX-License-Identifier: 0BSD
  *
- * Operations: 3835 (2137 mul, 1698 add, 0 neg), 6 div, 10 trig, 6 other.
+ * Operations: 3835 (2137 mul, 1698 add, 0 neg), 6 div, 10 trig, 6 other calls (sign, select and the like).
  *
  * @param[in]   q             [6]   [rad]                    joint coordinates; norm at most 10000
  * @param[in]   dq            [6]   [rad/s]                  joint velocities; norm at most 100000
@@ -15,9 +15,9 @@
  *                                                           norm at most 1e+09
  * @param[in]   parameters    [52]                           base parameters; norm at most 1e+09
  * @param[out]  ddq           [6]   [rad/s^2]                joint accelerations
- * @param[out]  ddq_by_q      [36]  [(rad/s^2) per (rad)]    d ddq / d q; 6 x 6, row-major
+ * @param[out]  ddq_by_q      [36]  [(rad/s^2) per rad]      d ddq / d q; 6 x 6, row-major
  * @param[out]  ddq_by_dq     [36]  [(rad/s^2) per (rad/s)]  d ddq / d dq; 6 x 6, row-major
- * @param[out]  ddq_by_input  [36]  [(rad/s^2) per (A)]      d ddq / d input; 6 x 6, row-major
+ * @param[out]  ddq_by_input  [36]  [(rad/s^2) per A]        d ddq / d input; 6 x 6, row-major
  *
  * Coordinates:
  *
@@ -86,11 +86,11 @@
  */
 #include "puma560_private.h"
 
-#if PUMA560_GENERATION != 0xAC9DC6F4UL
+#if PUMA560_GENERATION != 0x0486C622UL
 #error "puma560.h and puma560_forward_dynamics_derivatives.c are of different generations: generate the arm again"
 #endif
 
-int puma560_forward_dynamics_derivatives(
+puma560_status_t puma560_forward_dynamics_derivatives(
     const puma560_real_t q[PUMA560_N_JOINTS],
     const puma560_real_t dq[PUMA560_N_JOINTS],
     const puma560_real_t input[PUMA560_N_JOINTS],
@@ -103,7 +103,7 @@ int puma560_forward_dynamics_derivatives(
     enum { ZZ1R = 0, XX2R, XY2, XZ2R, YZ2, ZZ2R, MX2R, MY2, XX3R, XY3R, XZ3, YZ3, ZZ3R, MX3R, MY3R, XX4R, XY4,
         XZ4, YZ4, ZZ4R, MX4, MY4R, XX5R, XY5, XZ5, YZ5, ZZ5R, MX5, MY5R, XX6R, XY6, XZ6, YZ6, ZZ6, MX6, MY6,
         FV1, FC1, FV2, FC2, FV3, FC3, IA3, FV4, FC4, IA4, FV5, FC5, IA5, FV6, FC6, IA6 };
-    int status = PUMA560_STATUS_OK;
+    puma560_status_t status = PUMA560_STATUS_OK;
 
     if (!puma560_within_joints(q, PUMA560_C(1.0e8))
         || !puma560_within_joints(dq, PUMA560_C(1.0e10))
@@ -138,9 +138,11 @@ int puma560_forward_dynamics_derivatives(
         puma560_zero(ddq_by_input, 36);
         return PUMA560_STATUS_PIVOT;
     }
+    /* link j6: column of the mass matrix */
     const puma560_real_t t3 = t1 * parameters[XZ6] + t2 * parameters[YZ6];
     const puma560_real_t t4 = PUMA560_C(1.0) / t0;
     const puma560_real_t t5 = t3 * t4;
+    /* link j6: inertia of it and all beyond */
     const puma560_real_t t6 = t2 * parameters[XX6R] - parameters[XY6] * (PUMA560_C(2.0) * t1);
     const puma560_real_t t7 = t2 * t6;
     const puma560_real_t t8 = parameters[ZZ5R] + (parameters[XX6R] - t7);
@@ -163,14 +165,16 @@ int puma560_forward_dynamics_derivatives(
     }
     const puma560_real_t t12 = parameters[XZ5] - (parameters[XY6] + t1 * t6);
     const puma560_real_t t14 = parameters[YZ5] - t3;
-    const puma560_real_t t16 = t13 * t12 + t15 * t14;
+    const puma560_real_t t16 = t13 * t12 + t15 * t14; /* link j5: column of the mass matrix */
+    /* link j6: column of the mass matrix */
     const puma560_real_t t17 = t2 * parameters[XZ6] - t1 * parameters[YZ6];
     const puma560_real_t t18 = t13 * t17 + t15 * parameters[ZZ6];
     const puma560_real_t t19 = t16 + t18 * t5;
     const puma560_real_t t20 = PUMA560_C(1.0) / t10;
     const puma560_real_t t21 = t19 * t20;
-    const puma560_real_t t22 = parameters[XX5R] + t7;
+    const puma560_real_t t22 = parameters[XX5R] + t7; /* link j6: inertia of it and all beyond */
     const puma560_real_t t23 = parameters[XY5] + t17;
+    /* link j5: inertia of it and all beyond */
     const puma560_real_t t24 = t15 * (t22 - parameters[ZZ6]) + t23 * (PUMA560_C(-2.0) * t13);
     const puma560_real_t t25 = t15 * t24;
     const puma560_real_t t26 = parameters[ZZ4R] + (t22 - t25);
@@ -194,21 +198,23 @@ int puma560_forward_dynamics_derivatives(
     }
     const puma560_real_t t31 = parameters[XZ4] + (t23 + t13 * t24);
     const puma560_real_t t33 = t16 - parameters[YZ4];
+    /* link j6: column of the mass matrix */
     const puma560_real_t t35 = t2 * parameters[MY6] + t1 * parameters[MX6];
-    const puma560_real_t t36 = parameters[MY4R] + t35;
+    const puma560_real_t t36 = parameters[MY4R] + t35; /* link j5: inertia of it and all beyond */
+    /* link j6: column of the mass matrix */
     const puma560_real_t t37 = t1 * parameters[MY6] - t2 * parameters[MX6];
-    const puma560_real_t t38 = t37 - parameters[MX5];
-    const puma560_real_t t39 = t13 * parameters[MY5R] + t15 * t38;
-    const puma560_real_t t40 = parameters[MX4] - t39;
-    const puma560_real_t t41 = t34 * t36 + t32 * t40;
+    const puma560_real_t t38 = t37 - parameters[MX5]; /* link j6: inertia of it and all beyond */
+    const puma560_real_t t39 = t13 * parameters[MY5R] + t15 * t38; /* link j5: column of the mass matrix */
+    const puma560_real_t t40 = parameters[MX4] - t39; /* link j5: inertia of it and all beyond */
+    const puma560_real_t t41 = t34 * t36 + t32 * t40; /* link j4: column of the mass matrix */
     const puma560_real_t t42 = PUMA560_C(-0.4318) * t41;
     const puma560_real_t t43 = t32 * t31 - t34 * t33 + t42;
-    const puma560_real_t t44 = t15 * t17 - t13 * parameters[ZZ6];
+    const puma560_real_t t44 = t15 * t17 - t13 * parameters[ZZ6]; /* link j6: column of the mass matrix */
     const puma560_real_t t45 = t15 * t35;
     const puma560_real_t t46 = t32 * t37 - t34 * t45;
     const puma560_real_t t47 = t13 * t35;
     const puma560_real_t t48 = PUMA560_C(-0.0203) * t47 + PUMA560_C(-0.4318) * t46 - (t32 * t44 + t34 * t3);
-    const puma560_real_t t49 = t13 * t14 - t15 * t12;
+    const puma560_real_t t49 = t13 * t14 - t15 * t12; /* link j5: column of the mass matrix */
     const puma560_real_t t50 = t15 * parameters[MY5R] - t13 * t38;
     const puma560_real_t t51 = t34 * t50;
     const puma560_real_t t52 = t32 * t49 + t34 * t8 + (PUMA560_C(-0.0203) * t39 + PUMA560_C(0.4318) * t51);
@@ -218,12 +224,14 @@ int puma560_forward_dynamics_derivatives(
     const puma560_real_t t56 = t54 * t55;
     const puma560_real_t t57 = t53 * t20;
     const puma560_real_t t58 = t48 * t4;
+    /* link j5: inertia of it and all beyond */
     const puma560_real_t t59 = parameters[XX4R] + (parameters[ZZ6] + t25);
     const puma560_real_t t60 = parameters[XY4] + t49;
+    /* link j4: inertia of it and all beyond */
     const puma560_real_t t61 = t34 * (t59 - t8) + t60 * (PUMA560_C(-2.0) * t32);
     const puma560_real_t t62 = t34 * t61;
-    const puma560_real_t t63 = t32 * t36 - t34 * t40;
-    const puma560_real_t t64 = PUMA560_C(-0.0406) * t63;
+    const puma560_real_t t63 = t32 * t36 - t34 * t40; /* link j4: column of the mass matrix */
+    const puma560_real_t t64 = PUMA560_C(-0.0406) * t63; /* link j4: inertia of it and all beyond */
     const puma560_real_t t65 = PUMA560_C(0.8636) * t50;
     const puma560_real_t t66 = parameters[ZZ3R] + (t59 - t62 + (t64 + t65));
     const puma560_real_t t67 = t66 + PUMA560_C(2884.36665969) * parameters[IA3];
@@ -243,17 +251,17 @@ int puma560_forward_dynamics_derivatives(
         puma560_zero(ddq_by_input, 36);
         return PUMA560_STATUS_PIVOT;
     }
-    const puma560_real_t t71 = t70 * t41;
+    const puma560_real_t t71 = t70 * t41; /* link j4: column of the mass matrix */
     const puma560_real_t t72 = t43 + PUMA560_C(0.4318) * t71;
-    const puma560_real_t t74 = t73 * t47 - t70 * t46;
+    const puma560_real_t t74 = t73 * t47 - t70 * t46; /* link j6: column of the mass matrix */
     const puma560_real_t t75 = t48 + PUMA560_C(-0.4318) * t74;
-    const puma560_real_t t76 = t70 * t51 + t73 * t39;
+    const puma560_real_t t76 = t70 * t51 + t73 * t39; /* link j5: column of the mass matrix */
     const puma560_real_t t77 = t52 + PUMA560_C(-0.4318) * t76;
     const puma560_real_t t78 = t77 + t75 * t5;
     const puma560_real_t t79 = t72 + t75 * t28 + t78 * t21;
-    const puma560_real_t t80 = t63 - parameters[MX3R];
+    const puma560_real_t t80 = t63 - parameters[MX3R]; /* link j4: inertia of it and all beyond */
     const puma560_real_t t81 = parameters[MY3R] + t50;
-    const puma560_real_t t82 = t70 * t81 + t73 * t80;
+    const puma560_real_t t82 = t70 * t81 + t73 * t80; /* link j3: column of the mass matrix */
     const puma560_real_t t83 = PUMA560_C(0.4318) * t82 - t66;
     const puma560_real_t t84 = t83 + t75 * t58 + t78 * t57 + t79 * t56;
     const puma560_real_t t85 = PUMA560_C(-1.0) / t68;
@@ -261,7 +269,7 @@ int puma560_forward_dynamics_derivatives(
     const puma560_real_t t87 = t79 * t55;
     const puma560_real_t t88 = t78 * t20;
     const puma560_real_t t89 = t75 * t4;
-    const puma560_real_t t90 = PUMA560_C(-0.8636) * t82;
+    const puma560_real_t t90 = PUMA560_C(-0.8636) * t82; /* link j3: inertia of it and all beyond */
     const puma560_real_t t91 = parameters[ZZ2R] + (t66 + t90);
     const puma560_real_t t92 = t91 - t75 * t89 - t78 * t88 - t79 * t87;
     const puma560_real_t t93 = puma560_bounded(t92 + t84 * t86);
@@ -280,21 +288,25 @@ int puma560_forward_dynamics_derivatives(
         puma560_zero(ddq_by_input, 36);
         return PUMA560_STATUS_PIVOT;
     }
-    const puma560_real_t t95 = t26 + t64;
+    const puma560_real_t t95 = t26 + t64; /* link j4: inertia of it and all beyond */
     const puma560_real_t t96 = parameters[XX3R] + (t8 + t62 + t65);
-    const puma560_real_t t97 = t34 * t31 + t32 * t33;
+    const puma560_real_t t97 = t34 * t31 + t32 * t33; /* link j4: column of the mass matrix */
     const puma560_real_t t98 = PUMA560_C(0.4318) * t63;
+    /* link j4: inertia of it and all beyond */
     const puma560_real_t t99 = parameters[XY3R] + (t97 + (t98 + PUMA560_C(-0.0203) * t50));
+    /* link j3: inertia of it and all beyond */
     const puma560_real_t t100 = t73 * (t95 - t96) + t99 * (PUMA560_C(2.0) * t70);
     const puma560_real_t t101 = t73 * t100;
     const puma560_real_t t102 = PUMA560_C(-0.2508) * t41;
     const puma560_real_t t103 = t96 + t101 + (t90 + t102);
     const puma560_real_t t104 = parameters[XX2R] + (t95 - t101 + t102);
-    const puma560_real_t t106 = t70 * t80 - t73 * t81;
+    const puma560_real_t t106 = t70 * t80 - t73 * t81; /* link j3: column of the mass matrix */
+    /* link j3: inertia of it and all beyond */
     const puma560_real_t t107 = parameters[XY2] + (t99 - t70 * t100 + PUMA560_C(0.4318) * t106);
+    /* link j2: inertia of it and all beyond */
     const puma560_real_t t109 = t105 * (t105 * (t103 - t104) + t107 * (PUMA560_C(2.0) * t108));
     const puma560_real_t t110 = parameters[ZZ1R] + (t104 + t109);
-    const puma560_real_t t111 = t32 * t45 + t34 * t37;
+    const puma560_real_t t111 = t32 * t45 + t34 * t37; /* link j6: column of the mass matrix */
     const puma560_real_t t112 = PUMA560_C(0.4318) * t111;
     const puma560_real_t t113 = t34 * t44 - t32 * t3 + t112;
     const puma560_real_t t114 = t18 - PUMA560_C(0.0203) * t111;
@@ -303,7 +315,7 @@ int puma560_forward_dynamics_derivatives(
     const puma560_real_t t117 = t73 * t113 - t70 * t114 + PUMA560_C(0.1254) * t74;
     const puma560_real_t t118 = t108 * t117 + t105 * t116;
     const puma560_real_t t119 = t118 * t4;
-    const puma560_real_t t120 = t32 * t50;
+    const puma560_real_t t120 = t32 * t50; /* link j5: column of the mass matrix */
     const puma560_real_t t121 = PUMA560_C(0.4318) * t120;
     const puma560_real_t t122 = t32 * t8 - t34 * t49 + t121;
     const puma560_real_t t123 = t16 - PUMA560_C(0.0203) * t120;
@@ -312,7 +324,7 @@ int puma560_forward_dynamics_derivatives(
     const puma560_real_t t126 = t70 * t122 + t73 * t123 - (t121 + PUMA560_C(-0.1254) * t125);
     const puma560_real_t t127 = t108 * t124 + t105 * t126 + t118 * t5;
     const puma560_real_t t128 = t127 * t20;
-    const puma560_real_t t129 = t97 + t98;
+    const puma560_real_t t129 = t97 + t98; /* link j4: column of the mass matrix */
     const puma560_real_t t130 = t26 - PUMA560_C(0.0203) * t63;
     const puma560_real_t t131 = t70 * t130 - t73 * t129 + PUMA560_C(-0.1254) * t71;
     const puma560_real_t t132 = t73 * t41;
@@ -320,15 +332,17 @@ int puma560_forward_dynamics_derivatives(
     const puma560_real_t t134 = t108 * t131 + t105 * t133 + t118 * t28 + t127 * t21;
     const puma560_real_t t135 = t134 * t55;
     const puma560_real_t t136 = t110 - t118 * t119 - t127 * t128 - t134 * t135;
+    /* link j4: inertia of it and all beyond */
     const puma560_real_t t137 = t60 + t32 * t61 + PUMA560_C(-0.0203) * t41 - parameters[XZ3];
     const puma560_real_t t138 = t43 - parameters[YZ3];
-    const puma560_real_t t139 = t73 * t137 - t70 * t138;
+    const puma560_real_t t139 = t73 * t137 - t70 * t138; /* link j3: column of the mass matrix */
     const puma560_real_t t140 = PUMA560_C(-0.1254) * t82;
     const puma560_real_t t141 = t139 + t140;
     const puma560_real_t t142 = t70 * t137 + t73 * t138 + PUMA560_C(-0.1254) * t106;
     const puma560_real_t t143 = t108 * t141 + t105 * t142 + t118 * t58 + t127 * t57;
     const puma560_real_t t144 = t143 + t134 * t56;
     const puma560_real_t t145 = t144 * t85;
+    /* link j3: inertia of it and all beyond */
     const puma560_real_t t146 = t139 + (t42 + t140) - parameters[XZ2R];
     const puma560_real_t t147 = t142 - parameters[YZ2];
     const puma560_real_t t148 = t108 * t146 + t105 * t147 + t118 * t89 + t127 * t88;
@@ -351,38 +365,38 @@ int puma560_forward_dynamics_derivatives(
         puma560_zero(ddq_by_input, 36);
         return PUMA560_STATUS_PIVOT;
     }
-    const puma560_real_t t154 = t108 * dq[0];
+    const puma560_real_t t154 = t108 * dq[0]; /* link j2: motion */
     const puma560_real_t t155 = t105 * dq[0];
-    const puma560_real_t t156 = t73 * t154 + t70 * t155;
+    const puma560_real_t t156 = t73 * t154 + t70 * t155; /* link j3: motion */
     const puma560_real_t t157 = t70 * t154 - t73 * t155;
     const puma560_real_t t158 = t156 * t157;
     const puma560_real_t t159 = dq[1] + dq[2];
     const puma560_real_t t160 = t157 * t159;
-    const puma560_real_t t161 = PUMA560_C(-2.0) * t160;
+    const puma560_real_t t161 = PUMA560_C(-2.0) * t160; /* link j4: motion */
     const puma560_real_t t162 = t32 * t161 - t34 * t158;
     const puma560_real_t t163 = t32 * t159;
     const puma560_real_t t164 = t34 * t156 + t163;
     const puma560_real_t t165 = dq[3] + t157;
     const puma560_real_t t166 = t164 * t165;
     const puma560_real_t t167 = t162 + t166;
-    const puma560_real_t t168 = t15 * t164 - t13 * t165;
+    const puma560_real_t t168 = t15 * t164 - t13 * t165; /* link j5: motion */
     const puma560_real_t t169 = t13 * t164 + t15 * t165;
     const puma560_real_t t170 = t168 * t169;
-    const puma560_real_t t171 = t167 - t170;
-    const puma560_real_t t172 = t32 * t158 + t34 * t161;
+    const puma560_real_t t171 = t167 - t170; /* link j6: motion */
+    const puma560_real_t t172 = t32 * t158 + t34 * t161; /* link j4: motion */
     const puma560_real_t t173 = t34 * t159;
     const puma560_real_t t174 = t32 * t156 - t173;
     const puma560_real_t t175 = t174 * t165;
     const puma560_real_t t176 = t172 - t175;
-    const puma560_real_t t177 = t176 - t175;
-    const puma560_real_t t178 = t164 * t174;
-    const puma560_real_t t179 = t156 * t159;
-    const puma560_real_t t180 = t179 + t178;
+    const puma560_real_t t177 = t176 - t175; /* link j5: motion */
+    const puma560_real_t t178 = t164 * t174; /* link j4: motion */
+    const puma560_real_t t179 = t156 * t159; /* link j3: motion */
+    const puma560_real_t t180 = t179 + t178; /* link j5: motion */
     const puma560_real_t t181 = t15 * t177 - t13 * t180;
     const puma560_real_t t182 = t174 - dq[4];
     const puma560_real_t t183 = t169 * t182;
     const puma560_real_t t184 = t181 + t183;
-    const puma560_real_t t185 = t183 + t184;
+    const puma560_real_t t185 = t183 + t184; /* link j6: motion */
     const puma560_real_t t186 = t1 * t171 - t2 * t185;
     const puma560_real_t t187 = t1 * t168 + t2 * t182;
     const puma560_real_t t188 = dq[5] + t169;
@@ -391,159 +405,188 @@ int puma560_forward_dynamics_derivatives(
     const puma560_real_t t191 = t2 * t171 + t1 * t185;
     const puma560_real_t t192 = t1 * t182 - t2 * t168;
     const puma560_real_t t193 = t192 * t188;
-    const puma560_real_t t194 = t191 - t193 - t193;
-    const puma560_real_t t195 = t15 * t180 + t13 * t177;
+    const puma560_real_t t194 = t191 - t193 - t193; /* link j6: force and moment */
+    const puma560_real_t t195 = t15 * t180 + t13 * t177; /* link j5: motion */
     const puma560_real_t t196 = t168 * t182;
     const puma560_real_t t197 = t195 - t196;
-    const puma560_real_t t198 = t192 * t187;
-    const puma560_real_t t199 = t197 + t198;
+    const puma560_real_t t198 = t192 * t187; /* link j6: motion */
+    const puma560_real_t t199 = t197 + t198; /* link j6: force and moment */
     const puma560_real_t t200 = parameters[XX6R] * t190 + parameters[ZZ6] * t189 + parameters[XY6] * t194
         + parameters[XZ6] * t199;
-    const puma560_real_t t201 = t187 * t187;
+    const puma560_real_t t201 = t187 * t187; /* link j6: motion */
     const puma560_real_t t202 = t188 * t188;
-    const puma560_real_t t203 = t157 * t157;
+    const puma560_real_t t203 = t157 * t157; /* link j3: motion */
     const puma560_real_t t204 = t159 * t159;
-    const puma560_real_t t205 = t203 + t204;
-    const puma560_real_t t206 = t155 * t155;
+    const puma560_real_t t205 = t203 + t204; /* link j4: motion */
+    const puma560_real_t t206 = t155 * t155; /* link j2: motion */
     const puma560_real_t t207 = dq[1] * dq[1];
-    const puma560_real_t t208 = PUMA560_C(0.4318) * (t207 + t206);
-    const puma560_real_t t209 = PUMA560_C(9.81) * t108;
-    const puma560_real_t t210 = t209 + t208;
-    const puma560_real_t t211 = t154 * t155;
+    const puma560_real_t t208 = PUMA560_C(0.4318) * (t207 + t206); /* link j3: motion */
+    const puma560_real_t t209 = PUMA560_C(9.81) * t108; /* link j2: motion */
+    const puma560_real_t t210 = t209 + t208; /* link j3: motion */
+    const puma560_real_t t211 = t154 * t155; /* link j2: motion */
     const puma560_real_t t212 = PUMA560_C(-9.81) * t105;
-    const puma560_real_t t213 = t212 + PUMA560_C(0.4318) * t211;
+    const puma560_real_t t213 = t212 + PUMA560_C(0.4318) * t211; /* link j3: motion */
     const puma560_real_t t214 = t70 * t213 - t73 * t210;
+    /* link j4: motion */
     const puma560_real_t t215 = t214 + (PUMA560_C(-0.0203) * t205 + PUMA560_C(-0.4318) * t158);
-    const puma560_real_t t216 = t154 * t154;
-    const puma560_real_t t217 = t216 + t206;
+    const puma560_real_t t216 = t154 * t154; /* link j2: motion */
+    const puma560_real_t t217 = t216 + t206; /* link j3: motion */
     const puma560_real_t t218 = PUMA560_C(0.1254) * t217;
-    const puma560_real_t t219 = dq[1] * t154;
-    const puma560_real_t t220 = PUMA560_C(-0.8636) * t219 - t218;
+    const puma560_real_t t219 = dq[1] * t154; /* link j2: motion */
+    const puma560_real_t t220 = PUMA560_C(-0.8636) * t219 - t218; /* link j3: motion */
+    /* link j4: motion */
     const puma560_real_t t221 = PUMA560_C(0.0406) * t179 - PUMA560_C(0.8636) * t160 - t220;
     const puma560_real_t t222 = t34 * t215 + t32 * t221;
-    const puma560_real_t t223 = t156 * t156;
-    const puma560_real_t t224 = t223 + t204;
-    const puma560_real_t t225 = t70 * t210 + t73 * t213;
+    const puma560_real_t t223 = t156 * t156; /* link j3: motion */
+    const puma560_real_t t224 = t223 + t204; /* link j4: motion */
+    const puma560_real_t t225 = t70 * t210 + t73 * t213; /* link j3: motion */
+    /* link j4: motion */
     const puma560_real_t t226 = t225 + (PUMA560_C(-0.0203) * t158 + PUMA560_C(-0.4318) * t224);
-    const puma560_real_t t227 = t13 * t222 - t15 * t226;
+    const puma560_real_t t227 = t13 * t222 - t15 * t226; /* link j5: motion */
+    /* link j6: force and moment */
     const puma560_real_t t228 = t200 + parameters[YZ6] * (t201 - t202) - parameters[MY6] * t227;
     const puma560_real_t t229 = t189 + t190;
     const puma560_real_t t230 = parameters[XX6R] - parameters[ZZ6];
     const puma560_real_t t231 = t197 - t198;
-    const puma560_real_t t232 = t192 * t192;
+    const puma560_real_t t232 = t192 * t192; /* link j6: motion */
+    /* link j6: force and moment */
     const puma560_real_t t233 = t193 * t230 + parameters[XY6] * t229 + parameters[YZ6] * t231
         + parameters[XZ6] * (t202 - t232);
     const puma560_real_t t234 = t233 + parameters[MX6] * t227;
-    const puma560_real_t t235 = t197 - t196;
+    const puma560_real_t t235 = t197 - t196; /* link j6: motion */
     const puma560_real_t t236 = t167 + t170;
+    /* link j5: force and moment */
     const puma560_real_t t237 = parameters[XY5] * t235 - (parameters[XX5R] * t184 + parameters[ZZ5R] * t183)
         - parameters[XZ5] * t236;
-    const puma560_real_t t238 = t169 * t169;
+    const puma560_real_t t238 = t169 * t169; /* link j5: motion */
     const puma560_real_t t239 = t182 * t182;
-    const puma560_real_t t240 = t32 * t215 - t34 * t221;
+    const puma560_real_t t240 = t32 * t215 - t34 * t221; /* link j4: motion */
+    /* link j6: what it passes on */
     const puma560_real_t t241 = t237 + parameters[YZ5] * (t238 - t239) + parameters[MY5R] * t240 - (t1 * t234
         - t2 * t228);
-    const puma560_real_t t242 = t15 * t222 + t13 * t226;
+    const puma560_real_t t242 = t15 * t222 + t13 * t226; /* link j5: motion */
+    /* link j6: force and moment */
     const puma560_real_t t243 = parameters[MX6] * (t1 * t242 + t2 * t240) + parameters[MY6] * (t2 * t242
         - t1 * t240);
     const puma560_real_t t244 = parameters[XX6R] * t198 - parameters[ZZ6] * t197 - parameters[YZ6] * t191
         - parameters[XZ6] * t186;
     const puma560_real_t t245 = t244 + parameters[XY6] * (t201 - t232) + t243;
-    const puma560_real_t t246 = parameters[XX5R] - parameters[ZZ5R];
-    const puma560_real_t t247 = t168 * t168;
+    const puma560_real_t t246 = parameters[XX5R] - parameters[ZZ5R]; /* link j5: force and moment */
+    const puma560_real_t t247 = t168 * t168; /* link j5: motion */
+    /* link j5: force and moment */
     const puma560_real_t t248 = parameters[XY5] * t185 - t196 * t246 + parameters[YZ5] * t171
         + parameters[XZ5] * (t247 - t239);
-    const puma560_real_t t249 = t248 + parameters[MX5] * t240 + t245;
-    const puma560_real_t t250 = t166 + t167;
+    const puma560_real_t t249 = t248 + parameters[MX5] * t240 + t245; /* link j6: what it passes on */
+    const puma560_real_t t250 = t166 + t167; /* link j5: motion */
     const puma560_real_t t251 = t179 - t178;
+    /* link j4: force and moment */
     const puma560_real_t t252 = parameters[ZZ4R] * t175 - parameters[XX4R] * t176 + parameters[XY4] * t250
         + parameters[XZ4] * t251;
-    const puma560_real_t t253 = t174 * t174;
+    const puma560_real_t t253 = t174 * t174; /* link j4: motion */
     const puma560_real_t t254 = t165 * t165;
+    /* link j5: what it passes on */
     const puma560_real_t t255 = t252 + parameters[YZ4] * (t253 - t254) + parameters[MY4R] * t226 + (t15 * t241
         + t13 * t249);
+    /* link j5: force and moment */
     const puma560_real_t t256 = parameters[ZZ5R] * t167 - parameters[XX5R] * t170 - parameters[YZ5] * t195
         + parameters[XZ5] * t181;
     const puma560_real_t t257 = t256 + parameters[XY5] * (t238 - t247) + (parameters[MX5] * t227
         + parameters[MY5R] * t242);
-    const puma560_real_t t258 = t257 + (t1 * t228 + t2 * t234);
-    const puma560_real_t t259 = parameters[XX4R] - parameters[ZZ4R];
-    const puma560_real_t t260 = t164 * t164;
+    const puma560_real_t t258 = t257 + (t1 * t228 + t2 * t234); /* link j6: what it passes on */
+    const puma560_real_t t259 = parameters[XX4R] - parameters[ZZ4R]; /* link j4: force and moment */
+    const puma560_real_t t260 = t164 * t164; /* link j4: motion */
+    /* link j4: force and moment */
     const puma560_real_t t261 = t166 * t259 + parameters[XY4] * t177 - parameters[YZ4] * t180
         + parameters[XZ4] * (t260 - t254);
-    const puma560_real_t t262 = t261 + parameters[MX4] * t226 - t258;
+    const puma560_real_t t262 = t261 + parameters[MX4] * t226 - t258; /* link j5: what it passes on */
+    /* link j6: force and moment */
     const puma560_real_t t263 = parameters[MX6] * (t201 + t202) + parameters[MY6] * t231;
     const puma560_real_t t264 = parameters[MX6] * t199 - parameters[MY6] * (t232 + t202);
+    /* link j6: what it passes on */
     const puma560_real_t t265 = parameters[MX5] * (t238 + t239) - parameters[MY5R] * t171 + (t2 * t263
         + t1 * t264);
     const puma560_real_t t266 = parameters[MX5] * t236 + parameters[MY5R] * (t247 + t239)
         + (parameters[MX6] * t194 - parameters[MY6] * t229);
+    /* link j5: what it passes on */
     const puma560_real_t t267 = t13 * t266 - t15 * t265 - (parameters[MX4] * (t253 + t254)
         + parameters[MY4R] * t180);
+    /* link j6: what it passes on */
     const puma560_real_t t268 = parameters[MX5] * t235 + parameters[MY5R] * t185 - (t1 * t263 - t2 * t264);
+    /* link j5: what it passes on */
     const puma560_real_t t269 = parameters[MX4] * t251 - parameters[MY4R] * (t260 + t254) + t268;
-    const puma560_real_t t270 = t32 * t267 + t34 * t269;
-    const puma560_real_t t271 = PUMA560_C(2.0) * t179;
+    const puma560_real_t t270 = t32 * t267 + t34 * t269; /* link j4: what it passes on */
+    const puma560_real_t t271 = PUMA560_C(2.0) * t179; /* link j4: motion */
+    /* link j3: force and moment */
     const puma560_real_t t272 = parameters[XX3R] * t160 + parameters[ZZ3R] * t160 + parameters[XY3R] * t271
         - parameters[XZ3] * t158;
+    /* link j4: what it passes on */
     const puma560_real_t t273 = t272 + parameters[YZ3] * (t203 - t204) + parameters[MY3R] * t220 + (t34 * t255
         + t32 * t262 + PUMA560_C(-0.4318) * t270);
+    /* link j4: force and moment */
     const puma560_real_t t274 = parameters[XZ4] * t172 - (parameters[ZZ4R] * t179 + parameters[XX4R] * t178
         + parameters[YZ4] * t162);
     const puma560_real_t t275 = t274 + parameters[XY4] * (t253 - t260) + (parameters[MX4] * t240
         + parameters[MY4R] * t222);
-    const puma560_real_t t276 = t275 + (t15 * t249 - t13 * t241);
-    const puma560_real_t t277 = parameters[XX3R] - parameters[ZZ3R];
+    const puma560_real_t t276 = t275 + (t15 * t249 - t13 * t241); /* link j5: what it passes on */
+    const puma560_real_t t277 = parameters[XX3R] - parameters[ZZ3R]; /* link j3: force and moment */
     const puma560_real_t t278 = t179 * t277 + parameters[XY3R] * t161 - parameters[YZ3] * t158
         + parameters[XZ3] * (t223 - t204);
+    /* link j4: what it passes on */
     const puma560_real_t t279 = t278 + parameters[MX3R] * t220 + (t276 + PUMA560_C(-0.0203) * t270);
     const puma560_real_t t280 = t34 * t267 - t32 * t269;
     const puma560_real_t t281 = parameters[MX3R] * t205 + parameters[MY3R] * t158 - t280;
+    /* link j5: what it passes on */
     const puma560_real_t t282 = parameters[MX4] * t250 + parameters[MY4R] * t177 + (t13 * t265 + t15 * t266);
+    /* link j4: what it passes on */
     const puma560_real_t t283 = parameters[MX3R] * t158 + parameters[MY3R] * t224 + t282;
-    const puma560_real_t t284 = t70 * t281 + t73 * t283;
-    const puma560_real_t t285 = dq[1] * t155;
-    const puma560_real_t t286 = parameters[ZZ2R] * t285;
+    const puma560_real_t t284 = t70 * t281 + t73 * t283; /* link j3: what it passes on */
+    const puma560_real_t t285 = dq[1] * t155; /* link j2: motion */
+    const puma560_real_t t286 = parameters[ZZ2R] * t285; /* link j2: force and moment */
     const puma560_real_t t287 = parameters[XY2] * (PUMA560_C(2.0) * t219) - (parameters[XX2R] * t285 + t286)
         + parameters[XZ2R] * t211;
     const puma560_real_t t288 = parameters[YZ2] * (t206 - t207);
+    /* link j3: what it passes on */
     const puma560_real_t t289 = t287 + t288 + (t73 * t273 + t70 * t279 + PUMA560_C(0.1254) * t284);
     const puma560_real_t t290 = PUMA560_C(0.1254) * (t70 * t283 - t73 * t281)
         + PUMA560_C(0.4318) * (parameters[MX3R] * t271 + parameters[MY3R] * t161 + t270);
-    const puma560_real_t t291 = t219 * (parameters[XX2R] - parameters[ZZ2R]);
+    const puma560_real_t t291 = t219 * (parameters[XX2R] - parameters[ZZ2R]); /* link j2: force and moment */
     const puma560_real_t t292 = parameters[XZ2R] * (t207 - t216);
     const puma560_real_t t293 = parameters[XY2] * (PUMA560_C(-2.0) * t285) - t291 - parameters[YZ2] * t211
         + t292;
+    /* link j2: what it passes on */
     const puma560_real_t t294 = t105 * (t293 + (t70 * t273 - t73 * t279 + t290));
-    const puma560_real_t t295 = puma560_sign(dq[0]);
+    const puma560_real_t t295 = puma560_sign(dq[0]); /* joint j1: coulomb_friction */
     const puma560_real_t t296 = PUMA560_C(62.6111) * (parameters[FV1] * (PUMA560_C(-62.6111) * dq[0])
         - parameters[FC1] * t295) + (t108 * t289 + t294);
-    const puma560_real_t t297 = puma560_sign(dq[5]);
+    const puma560_real_t t297 = puma560_sign(dq[5]); /* joint j6: coulomb_friction */
     const puma560_real_t t298 = PUMA560_C(76.686) * (parameters[FV6] * (PUMA560_C(-76.686) * dq[5])
         - parameters[FC6] * t297) + t245;
     const puma560_real_t t299 = PUMA560_C(5.368020000000001) * input[5] + t298;
-    const puma560_real_t t300 = puma560_sign(dq[4]);
+    const puma560_real_t t300 = puma560_sign(dq[4]); /* joint j5: coulomb_friction */
     const puma560_real_t t301 = PUMA560_C(71.923) * (parameters[FV5] * (PUMA560_C(-71.923) * dq[4])
         - parameters[FC5] * t300) + t258;
     const puma560_real_t t302 = PUMA560_C(5.034610000000001) * input[4] + t301 + t299 * t5;
     const puma560_real_t t303 = PUMA560_C(-14.400553) * input[0] + t296 + t299 * t119 + t302 * t128;
-    const puma560_real_t t304 = puma560_sign(dq[3]);
+    const puma560_real_t t304 = puma560_sign(dq[3]); /* joint j4: coulomb_friction */
     const puma560_real_t t305 = PUMA560_C(76.0364) * (parameters[FV4] * (PUMA560_C(-76.0364) * dq[3])
         - parameters[FC4] * t304) + t276;
     const puma560_real_t t306 = PUMA560_C(5.322548) * input[3] + t305 - t299 * t28 - t302 * t21;
+    /* link j4: what it passes on */
     const puma560_real_t t307 = t32 * t255 - t34 * t262 + (PUMA560_C(0.0203) * t282
         + PUMA560_C(0.4318) * t280);
+    /* link j3: force and moment */
     const puma560_real_t t308 = parameters[XY3R] * (t203 - t223) - parameters[XX3R] * t158
         + (parameters[MY3R] * t214 - parameters[MX3R] * t225);
-    const puma560_real_t t309 = t308 + t307;
-    const puma560_real_t t310 = puma560_sign(dq[2]);
+    const puma560_real_t t309 = t308 + t307; /* link j4: what it passes on */
+    const puma560_real_t t310 = puma560_sign(dq[2]); /* joint j3: coulomb_friction */
     const puma560_real_t t311 = PUMA560_C(53.7063) * (parameters[FV3] * (PUMA560_C(-53.7063) * dq[2])
         - parameters[FC3] * t310) + t309;
     const puma560_real_t t312 = PUMA560_C(-12.352449) * input[2] + t311 - t299 * t58 - t302 * t57;
     const puma560_real_t t313 = t312 + t306 * t56;
+    /* link j2: force and moment */
     const puma560_real_t t314 = parameters[XX2R] * t211 + parameters[XY2] * (t206 - t216)
         - (parameters[MX2R] * t212 + parameters[MY2] * t209);
-    const puma560_real_t t315 = puma560_sign(dq[1]);
+    const puma560_real_t t315 = puma560_sign(dq[1]); /* joint j2: coulomb_friction */
     const puma560_real_t t316 = PUMA560_C(107.815) * (parameters[FV2] * (PUMA560_C(-107.815) * dq[1])
         - parameters[FC2] * t315) + (t314 + (t309 + PUMA560_C(0.4318) * t284));
     const puma560_real_t t317 = PUMA560_C(24.79745) * input[1] + t316 - t299 * t89 - t302 * t88;
@@ -564,19 +607,19 @@ int puma560_forward_dynamics_derivatives(
     const puma560_real_t t327 = t299 * t4 + t119 * t321 - t89 * t322 - t58 * t323;
     const puma560_real_t t328 = puma560_bounded(t327 - t28 * t324 + t5 * t326);
     ddq[5] = t328;
-    const puma560_real_t t329 = t108 * t73 + t105 * t70;
+    const puma560_real_t t329 = t108 * t73 + t105 * t70; /* link j3: motion */
     const puma560_real_t t330 = dq[0] * t329;
-    const puma560_real_t t331 = t163 + t34 * t330;
-    const puma560_real_t t332 = t108 * t70 - t105 * t73;
+    const puma560_real_t t331 = t163 + t34 * t330; /* link j4: motion */
+    const puma560_real_t t332 = t108 * t70 - t105 * t73; /* link j3: motion */
     const puma560_real_t t333 = dq[0] * t332;
-    const puma560_real_t t334 = dq[3] + t333;
-    const puma560_real_t t335 = t13 * t334 - t15 * t331;
-    const puma560_real_t t336 = t32 * t330 - t173;
-    const puma560_real_t t337 = t336 - dq[4];
-    const puma560_real_t t338 = t2 * t337 - t1 * t335;
+    const puma560_real_t t334 = dq[3] + t333; /* link j4: motion */
+    const puma560_real_t t335 = t13 * t334 - t15 * t331; /* link j5: motion */
+    const puma560_real_t t336 = t32 * t330 - t173; /* link j4: motion */
+    const puma560_real_t t337 = t336 - dq[4]; /* link j5: motion */
+    const puma560_real_t t338 = t2 * t337 - t1 * t335; /* link j6: motion */
     const puma560_real_t t339 = parameters[XZ6] * t338;
-    const puma560_real_t t340 = t13 * t331 + t15 * t334;
-    const puma560_real_t t341 = dq[5] + t340;
+    const puma560_real_t t340 = t13 * t331 + t15 * t334; /* link j5: motion */
+    const puma560_real_t t341 = dq[5] + t340; /* link j6: motion */
     const puma560_real_t t342 = parameters[XY6] * t341;
     const puma560_real_t t343 = t339 - t342;
     const puma560_real_t t344 = t2 * t335 + t1 * t337;
@@ -586,6 +629,7 @@ int puma560_forward_dynamics_derivatives(
     const puma560_real_t t348 = parameters[XX6R] + t347;
     const puma560_real_t t349 = t341 * t348 - parameters[XZ6] * t344;
     const puma560_real_t t350 = parameters[YZ6] * t338 - t341 * t347;
+    /* link j6: inertia, momentum beyond */
     const puma560_real_t t351 = t2 * (t343 + t346) - t1 * (t349 + t350);
     const puma560_real_t t352 = t2 * t351;
     const puma560_real_t t353 = parameters[XZ5] * t340;
@@ -603,78 +647,93 @@ int puma560_forward_dynamics_derivatives(
     const puma560_real_t t365 = t344 * t347 - parameters[XY6] * t338;
     const puma560_real_t t366 = parameters[XX5R] - t362;
     const puma560_real_t t367 = t337 * t366 + parameters[XZ5] * t335 + (t2 * t364 + t1 * t365);
+    /* link j5: inertia, momentum beyond */
     const puma560_real_t t368 = t15 * (t355 + t358) + t13 * (t367 - t363);
     const puma560_real_t t369 = t15 * t368;
     const puma560_real_t t370 = parameters[XZ4] * t336;
     const puma560_real_t t371 = parameters[XY4] * t334;
     const puma560_real_t t372 = t371 - t370 + (t358 - t369);
-    const puma560_real_t t373 = t353 - t357 + (t352 - t343);
+    const puma560_real_t t373 = t353 - t357 + (t352 - t343); /* link j6: inertia, momentum beyond */
     const puma560_real_t t374 = parameters[YZ4] * t331;
-    const puma560_real_t t375 = t371 + t374 - t373;
-    const puma560_real_t t376 = t1 * t351;
+    const puma560_real_t t375 = t371 + t374 - t373; /* link j5: inertia, momentum beyond */
+    const puma560_real_t t376 = t1 * t351; /* link j6: inertia, momentum beyond */
     const puma560_real_t t377 = t362 - parameters[ZZ5R];
     const puma560_real_t t378 = t340 * t377 - parameters[YZ5] * t337 + (t350 + t376);
     const puma560_real_t t379 = t335 * t377 - parameters[XZ5] * t337 + (t1 * t364 - t2 * t365);
     const puma560_real_t t380 = PUMA560_C(0.5) * (parameters[XX4R] + parameters[ZZ4R]);
+    /* link j5: inertia, momentum beyond */
     const puma560_real_t t381 = parameters[YZ4] * t336 + t334 * t380 + (t15 * t378 + t13 * t379);
+    /* link j6: inertia, momentum beyond */
     const puma560_real_t t382 = t340 * t366 - parameters[XY5] * t335 + (t349 + t376);
     const puma560_real_t t383 = t335 * t362 + parameters[XY5] * t340 + (t1 * t360 + t2 * t361);
     const puma560_real_t t384 = parameters[XX4R] - t380;
+    /* link j5: inertia, momentum beyond */
     const puma560_real_t t385 = t334 * t384 + parameters[XZ4] * t331 + (t15 * t382 - t13 * t383);
+    /* link j4: inertia, momentum beyond */
     const puma560_real_t t386 = t34 * (t372 + t375) + t32 * (t381 + t385);
     const puma560_real_t t387 = t34 * t386;
     const puma560_real_t t388 = parameters[MY6] * t341;
     const puma560_real_t t389 = parameters[MX6] * t341;
+    /* link j6: inertia, momentum beyond */
     const puma560_real_t t390 = t2 * t388 + t1 * t389 - parameters[MY5R] * t337;
     const puma560_real_t t391 = parameters[MY6] * t344 - parameters[MX6] * t338;
     const puma560_real_t t392 = t391 - parameters[MX5] * t337;
+    /* link j5: inertia, momentum beyond */
     const puma560_real_t t393 = parameters[MY4R] * t334 + (t15 * t390 + t13 * t392);
+    /* link j6: inertia, momentum beyond */
     const puma560_real_t t394 = parameters[MY5R] * t335 - parameters[MX5] * t340 + (t1 * t388 - t2 * t389);
-    const puma560_real_t t395 = parameters[MX4] * t334 - t394;
-    const puma560_real_t t396 = t34 * t393 + t32 * t395;
+    const puma560_real_t t395 = parameters[MX4] * t334 - t394; /* link j5: inertia, momentum beyond */
+    const puma560_real_t t396 = t34 * t393 + t32 * t395; /* link j4: inertia, momentum beyond */
     const puma560_real_t t397 = PUMA560_C(0.0203) * t396;
-    const puma560_real_t t398 = PUMA560_C(0.4318) * t159;
-    const puma560_real_t t399 = t63 * t398;
+    const puma560_real_t t398 = PUMA560_C(0.4318) * t159; /* link j4: velocity of its origin */
+    const puma560_real_t t399 = t63 * t398; /* link j4: inertia, momentum beyond */
+    /* link j5: inertia, momentum beyond */
     const puma560_real_t t400 = parameters[MY4R] * t331 + parameters[MX4] * t336 + (t13 * t390 - t15 * t392);
-    const puma560_real_t t401 = PUMA560_C(0.4318) * t400;
+    const puma560_real_t t401 = PUMA560_C(0.4318) * t400; /* link j4: inertia, momentum beyond */
     const puma560_real_t t402 = PUMA560_C(-0.4318) * t330 + PUMA560_C(-0.0203) * t333;
     const puma560_real_t t403 = t41 * t402;
-    const puma560_real_t t404 = PUMA560_C(-0.0203) * t159;
-    const puma560_real_t t405 = t50 * t404;
+    const puma560_real_t t404 = PUMA560_C(-0.0203) * t159; /* link j4: velocity of its origin */
+    const puma560_real_t t405 = t50 * t404; /* link j4: inertia, momentum beyond */
     const puma560_real_t t406 = t397 + t401 + (t405 - t399 + t403);
     const puma560_real_t t407 = parameters[XZ3] * t333;
     const puma560_real_t t408 = parameters[XY3R] * t159;
     const puma560_real_t t409 = t408 - t407 + (t406 + (t387 - t375 + (t399 - t397)));
-    const puma560_real_t t410 = t370 + t374 + (t369 - t355);
+    const puma560_real_t t410 = t370 + t374 + (t369 - t355); /* link j5: inertia, momentum beyond */
     const puma560_real_t t411 = parameters[YZ3] * t330;
+    /* link j4: inertia, momentum beyond */
     const puma560_real_t t412 = t408 + t411 - (t406 - (t401 + t405 - t410));
-    const puma560_real_t t413 = t13 * t368;
+    const puma560_real_t t413 = t13 * t368; /* link j5: inertia, momentum beyond */
     const puma560_real_t t414 = t380 - parameters[ZZ4R];
     const puma560_real_t t415 = t363 + t413 - (t336 * t414 + parameters[YZ4] * t334);
     const puma560_real_t t416 = parameters[XZ4] * t334 - t331 * t414 + (t13 * t382 + t15 * t383);
+    /* link j4: inertia, momentum beyond */
     const puma560_real_t t417 = t34 * t415 - t32 * t416 + (PUMA560_C(0.4318) * t396 + t50 * t398);
     const puma560_real_t t418 = PUMA560_C(-0.5) * (parameters[XX3R] + parameters[ZZ3R]);
     const puma560_real_t t419 = parameters[YZ3] * t333 - t159 * t418 + t417;
+    /* link j5: inertia, momentum beyond */
     const puma560_real_t t420 = t413 - t367 - (parameters[XY4] * t331 + t336 * t384);
     const puma560_real_t t421 = t331 * t380 - parameters[XY4] * t336 - (t15 * t379 - t13 * t378);
+    /* link j4: inertia, momentum beyond */
     const puma560_real_t t422 = t32 * t421 - t34 * t420 - (PUMA560_C(0.0203) * t400 - t63 * t404);
     const puma560_real_t t423 = parameters[XX3R] + t418;
     const puma560_real_t t424 = t159 * t423 + parameters[XZ3] * t330 - t422;
+    /* link j3: inertia, momentum beyond */
     const puma560_real_t t425 = t73 * (t409 + t412) + t70 * (t419 + t424);
     const puma560_real_t t426 = t73 * t425;
-    const puma560_real_t t427 = parameters[MY3R] * t159 + t396;
+    const puma560_real_t t427 = parameters[MY3R] * t159 + t396; /* link j4: inertia, momentum beyond */
     const puma560_real_t t428 = parameters[MX3R] * t159 - t400;
-    const puma560_real_t t429 = t73 * t427 + t70 * t428;
+    const puma560_real_t t429 = t73 * t427 + t70 * t428; /* link j3: inertia, momentum beyond */
     const puma560_real_t t430 = PUMA560_C(0.4318) * t429;
-    const puma560_real_t t431 = PUMA560_C(-0.1254) * t155;
-    const puma560_real_t t432 = t82 * t431;
-    const puma560_real_t t433 = t32 * t393 - t34 * t395;
+    const puma560_real_t t431 = PUMA560_C(-0.1254) * t155; /* link j3: velocity of its origin */
+    const puma560_real_t t432 = t82 * t431; /* link j3: inertia, momentum beyond */
+    const puma560_real_t t433 = t32 * t393 - t34 * t395; /* link j4: inertia, momentum beyond */
     const puma560_real_t t434 = parameters[MY3R] * t330 + parameters[MX3R] * t333 - t433;
-    const puma560_real_t t435 = PUMA560_C(0.1254) * t434;
+    const puma560_real_t t435 = PUMA560_C(0.1254) * t434; /* link j3: inertia, momentum beyond */
+    /* link j3: velocity of its origin */
     const puma560_real_t t436 = PUMA560_C(-0.4318) * dq[1] + PUMA560_C(-0.1254) * t154;
-    const puma560_real_t t437 = t106 * t436;
-    const puma560_real_t t438 = PUMA560_C(0.4318) * t155;
-    const puma560_real_t t439 = t41 * t438;
+    const puma560_real_t t437 = t106 * t436; /* link j3: inertia, momentum beyond */
+    const puma560_real_t t438 = PUMA560_C(0.4318) * t155; /* link j3: velocity of its origin */
+    const puma560_real_t t439 = t41 * t438; /* link j3: inertia, momentum beyond */
     const puma560_real_t t440 = t430 + t435 + (t432 - t437 + t439);
     const puma560_real_t t441 = parameters[XZ2R] * t155;
     const puma560_real_t t442 = parameters[XY2] * dq[1];
@@ -688,45 +747,51 @@ int puma560_forward_dynamics_derivatives(
     const puma560_real_t t450 = parameters[XX2R] + t447;
     const puma560_real_t t451 = t446 - t424 + (PUMA560_C(-0.4318) * t449 + t82 * t436)
         - (parameters[XZ2R] * t154 + dq[1] * t450);
+    /* link j2: inertia, momentum beyond */
     const puma560_real_t t452 = t105 * (t105 * (t445 - t443) + t108 * (t448 + t451));
     const puma560_real_t t453 = PUMA560_C(-272.2221739130435) * parameters[FV1]
         + PUMA560_C(0.13888355537457484) * (t443 + t452);
     const puma560_real_t t454 = puma560_bounded(PUMA560_C(-14.400553) * t320);
     const puma560_real_t t455 = t151 * t320;
     const puma560_real_t t456 = puma560_bounded(PUMA560_C(24.79745) * t455);
-    const puma560_real_t t457 = t32 * t386;
+    const puma560_real_t t457 = t32 * t386; /* link j4: inertia, momentum beyond */
     const puma560_real_t t458 = parameters[XY3R] * t330 + t333 * t423 + (t385 - t457
         + (PUMA560_C(0.0203) * t433 - t63 * t402));
     const puma560_real_t t459 = t32 * t415 + t34 * t416 + (PUMA560_C(0.4318) * t433 + t50 * t402);
     const puma560_real_t t460 = t330 * t418 + parameters[XY3R] * t333 + t459;
+    /* link j3: inertia, momentum beyond */
     const puma560_real_t t461 = t70 * t460 - t73 * t458 + (PUMA560_C(0.4318) * t434 + t82 * t438);
+    /* link j2: derivatives */
     const puma560_real_t t462 = PUMA560_C(2.0) * (t155 * t450 - parameters[XY2] * t154 + t461);
+    /* link j3: inertia, momentum beyond */
     const puma560_real_t t463 = parameters[XY2] * t155 - t154 * t447 - (t70 * t458 + t73 * t460
         - t106 * t438);
-    const puma560_real_t t464 = PUMA560_C(2.0) * t463;
+    const puma560_real_t t464 = PUMA560_C(2.0) * t463; /* link j2: derivatives */
     const puma560_real_t t465 = PUMA560_C(0.04032672714331514) * (t108 * t462 + t105 * t464);
     const puma560_real_t t466 = t320 * (t86 * t151 - t145);
     const puma560_real_t t467 = puma560_bounded(PUMA560_C(12.352449) * t466);
-    const puma560_real_t t468 = PUMA560_C(2.0) * t458;
+    const puma560_real_t t468 = PUMA560_C(2.0) * t458; /* link j3: derivatives */
     const puma560_real_t t469 = PUMA560_C(2.0) * t460;
-    const puma560_real_t t470 = PUMA560_C(0.8636) * t155;
-    const puma560_real_t t471 = t70 * t469 - t73 * t468 + t82 * t470;
+    const puma560_real_t t470 = PUMA560_C(0.8636) * t155; /* link j6: derivatives */
+    const puma560_real_t t471 = t70 * t469 - t73 * t468 + t82 * t470; /* link j3: derivatives */
     const puma560_real_t t472 = t70 * t468 + t73 * t469 - t106 * t470;
     const puma560_real_t t473 = PUMA560_C(0.08095560645504385) * (t108 * t471 - t105 * t472);
     const puma560_real_t t474 = t87 - t56 * t86;
     const puma560_real_t t475 = t320 * (t56 * t145 - t135 + t151 * t474);
     const puma560_real_t t476 = puma560_bounded(PUMA560_C(5.322548) * t475);
-    const puma560_real_t t477 = PUMA560_C(2.0) * t420;
+    const puma560_real_t t477 = PUMA560_C(2.0) * t420; /* link j4: derivatives */
     const puma560_real_t t478 = PUMA560_C(2.0) * t421;
-    const puma560_real_t t479 = PUMA560_C(-0.0406) * t159;
-    const puma560_real_t t480 = t32 * t478 - t34 * t477 + t63 * t479;
+    const puma560_real_t t479 = PUMA560_C(-0.0406) * t159; /* link j6: derivatives */
+    const puma560_real_t t480 = t32 * t478 - t34 * t477 + t63 * t479; /* link j4: derivatives */
     const puma560_real_t t481 = PUMA560_C(2.0) * t410;
-    const puma560_real_t t482 = PUMA560_C(2.0) * t402;
+    const puma560_real_t t482 = PUMA560_C(2.0) * t402; /* link j6: derivatives */
     const puma560_real_t t483 = PUMA560_C(-0.8636) * t159;
-    const puma560_real_t t484 = t481 + (t41 * t482 + t63 * t483);
-    const puma560_real_t t485 = PUMA560_C(2.0) * t436;
+    const puma560_real_t t484 = t481 + (t41 * t482 + t63 * t483); /* link j4: derivatives */
+    const puma560_real_t t485 = PUMA560_C(2.0) * t436; /* link j6: derivatives */
+    /* link j4: derivatives */
     const puma560_real_t t486 = t70 * t484 - t73 * t480 + (t71 * t470 - t63 * t485);
-    const puma560_real_t t487 = PUMA560_C(-0.2508) * t155;
+    const puma560_real_t t487 = PUMA560_C(-0.2508) * t155; /* link j6: derivatives */
+    /* link j4: derivatives */
     const puma560_real_t t488 = t70 * t480 + t73 * t484 + (t132 * t470 + t63 * t487);
     const puma560_real_t t489 = PUMA560_C(0.18787994020908783) * (t108 * t486 - t105 * t488);
     const puma560_real_t t490 = t465 * t456 - t453 * t454 - t473 * t467 + t489 * t476;
@@ -735,7 +800,7 @@ int puma560_forward_dynamics_derivatives(
     const puma560_real_t t493 = t128 + t21 * t135 - t145 * t491 + t151 * t492;
     const puma560_real_t t494 = t320 * t493;
     const puma560_real_t t495 = puma560_bounded(PUMA560_C(5.034610000000001) * t494);
-    const puma560_real_t t496 = PUMA560_C(2.0) * t382;
+    const puma560_real_t t496 = PUMA560_C(2.0) * t382; /* link j5: derivatives */
     const puma560_real_t t497 = PUMA560_C(2.0) * t383;
     const puma560_real_t t498 = t13 * t497 - t15 * t496;
     const puma560_real_t t499 = PUMA560_C(2.0) * t373;
@@ -751,7 +816,7 @@ int puma560_forward_dynamics_derivatives(
     const puma560_real_t t509 = t119 + t5 * t128 + t135 * t506 - t145 * t507;
     const puma560_real_t t510 = t320 * (t509 + t151 * t508);
     const puma560_real_t t511 = PUMA560_C(5.368020000000001) * t510;
-    const puma560_real_t t512 = PUMA560_C(2.0) * t364;
+    const puma560_real_t t512 = PUMA560_C(2.0) * t364; /* link j6: derivatives */
     const puma560_real_t t513 = PUMA560_C(2.0) * t365;
     const puma560_real_t t514 = t2 * t512 + t1 * t513;
     const puma560_real_t t515 = PUMA560_C(2.0) * t356;
@@ -825,43 +890,43 @@ int puma560_forward_dynamics_derivatives(
     ddq_by_input[24] = t555;
     ddq_by_input[30] = t565;
     const puma560_real_t t573 = t322 + t323;
-    const puma560_real_t t574 = t330 * t333;
+    const puma560_real_t t574 = t330 * t333; /* link j3: motion */
     const puma560_real_t t575 = t574 + t573;
     const puma560_real_t t576 = t321 * t329;
     const puma560_real_t t577 = t159 * t333;
     const puma560_real_t t578 = t576 - t577;
     const puma560_real_t t579 = t578 - t577;
     const puma560_real_t t580 = t34 * t575 - t32 * t579;
-    const puma560_real_t t581 = t331 * t334;
+    const puma560_real_t t581 = t331 * t334; /* link j4: motion */
     const puma560_real_t t582 = t580 - t581;
     const puma560_real_t t583 = t326 + t582;
-    const puma560_real_t t584 = t335 * t340;
+    const puma560_real_t t584 = t335 * t340; /* link j5: motion */
     const puma560_real_t t585 = t583 - t584;
     const puma560_real_t t586 = t321 * t332;
-    const puma560_real_t t587 = t159 * t330;
+    const puma560_real_t t587 = t159 * t330; /* link j3: motion */
     const puma560_real_t t588 = t587 + t586;
     const puma560_real_t t589 = t324 + t588;
-    const puma560_real_t t590 = t331 * t336;
+    const puma560_real_t t590 = t331 * t336; /* link j4: motion */
     const puma560_real_t t591 = t590 + t589;
     const puma560_real_t t592 = t32 * t575 + t34 * t579;
     const puma560_real_t t593 = t336 * t334;
     const puma560_real_t t594 = t593 - t592;
     const puma560_real_t t595 = t593 + t594;
     const puma560_real_t t596 = t13 * t591 + t15 * t595;
-    const puma560_real_t t597 = t340 * t337;
+    const puma560_real_t t597 = t340 * t337; /* link j5: motion */
     const puma560_real_t t598 = t597 - t596;
     const puma560_real_t t599 = t597 + t598;
     const puma560_real_t t600 = t1 * t585 + t2 * t599;
-    const puma560_real_t t601 = t338 * t341;
+    const puma560_real_t t601 = t338 * t341; /* link j6: motion */
     const puma560_real_t t602 = t601 - t600;
     const puma560_real_t t603 = t2 * t585 - t1 * t599;
     const puma560_real_t t604 = t344 * t341;
     const puma560_real_t t605 = t604 + (t604 + t603);
     const puma560_real_t t606 = t13 * t595 - t15 * t591;
-    const puma560_real_t t607 = t335 * t337;
+    const puma560_real_t t607 = t335 * t337; /* link j5: motion */
     const puma560_real_t t608 = t607 - t606;
     const puma560_real_t t609 = t328 + t608;
-    const puma560_real_t t610 = t344 * t338;
+    const puma560_real_t t610 = t344 * t338; /* link j6: motion */
     const puma560_real_t t611 = t610 + t609;
     const puma560_real_t t612 = parameters[ZZ6] * t601 + parameters[XX6R] * t602 - parameters[XY6] * t605
         + parameters[XZ6] * t611;
@@ -873,8 +938,8 @@ int puma560_forward_dynamics_derivatives(
     const puma560_real_t t618 = t105 * t321;
     const puma560_real_t t619 = t209 + (t208 + PUMA560_C(0.1254) * t618);
     const puma560_real_t t620 = t73 * t619 - t70 * t617;
-    const puma560_real_t t621 = t333 * t333;
-    const puma560_real_t t622 = t204 + t621;
+    const puma560_real_t t621 = t333 * t333; /* link j3: motion */
+    const puma560_real_t t622 = t204 + t621; /* link j4: motion */
     const puma560_real_t t623 = t620 + (PUMA560_C(0.0203) * t622 + PUMA560_C(0.4318) * t575);
     const puma560_real_t t624 = t587 + t588;
     const puma560_real_t t625 = t219 + (t219 - t618);
@@ -883,14 +948,14 @@ int puma560_forward_dynamics_derivatives(
     const puma560_real_t t628 = t32 * t627 - t34 * t623;
     const puma560_real_t t629 = t70 * t619 + t73 * t617;
     const puma560_real_t t630 = t573 - t574;
-    const puma560_real_t t631 = t330 * t330;
-    const puma560_real_t t632 = t204 + t631;
+    const puma560_real_t t631 = t330 * t330; /* link j3: motion */
+    const puma560_real_t t632 = t204 + t631; /* link j4: motion */
     const puma560_real_t t633 = t629 + (PUMA560_C(-0.4318) * t632 + PUMA560_C(0.0203) * t630);
     const puma560_real_t t634 = t15 * t633 - t13 * t628;
     const puma560_real_t t635 = parameters[YZ6] * (t613 - t614) + t612 + parameters[MY6] * t634;
     const puma560_real_t t636 = t609 - t610;
     const puma560_real_t t637 = t601 + t602;
-    const puma560_real_t t638 = t344 * t344;
+    const puma560_real_t t638 = t344 * t344; /* link j6: motion */
     const puma560_real_t t639 = parameters[XZ6] * (t638 - t614) - (t230 * t604 + parameters[XY6] * t637
         + parameters[YZ6] * t636);
     const puma560_real_t t640 = t639 + parameters[MX6] * t634;
@@ -898,7 +963,7 @@ int puma560_forward_dynamics_derivatives(
     const puma560_real_t t642 = t584 + t583;
     const puma560_real_t t643 = parameters[ZZ5R] * t597 + parameters[XX5R] * t598 - parameters[XY5] * t641
         - parameters[XZ5] * t642;
-    const puma560_real_t t644 = t340 * t340;
+    const puma560_real_t t644 = t340 * t340; /* link j5: motion */
     const puma560_real_t t645 = t337 * t337;
     const puma560_real_t t646 = t32 * t623 + t34 * t627;
     const puma560_real_t t647 = parameters[YZ5] * (t645 - t644) + t643 + parameters[MY5R] * t646 - (t2 * t635
@@ -918,7 +983,7 @@ int puma560_forward_dynamics_derivatives(
     const puma560_real_t t657 = t590 - t589;
     const puma560_real_t t658 = parameters[XZ4] * t657 - (parameters[ZZ4R] * t593 + parameters[XX4R] * t594
         + parameters[XY4] * t656);
-    const puma560_real_t t659 = t336 * t336;
+    const puma560_real_t t659 = t336 * t336; /* link j4: motion */
     const puma560_real_t t660 = t334 * t334;
     const puma560_real_t t661 = parameters[YZ4] * (t659 - t660) - t658 + parameters[MY4R] * t633 + (t13 * t655
         - t15 * t647);
@@ -961,7 +1026,7 @@ int puma560_forward_dynamics_derivatives(
     const puma560_real_t t686 = t285 + t616;
     const puma560_real_t t687 = t291 + parameters[XY2] * (t285 + t686) + parameters[YZ2] * (t211 - t322);
     const puma560_real_t t688 = t687 - t292 + (t70 * t676 + t73 * t681 + t685);
-    const puma560_real_t t689 = PUMA560_C(-2.0) * t155;
+    const puma560_real_t t689 = PUMA560_C(-2.0) * t155; /* link j2: derivatives */
     const puma560_real_t t690 = PUMA560_C(2.0) * t154;
     const puma560_real_t t691 = t146 * t217 + (t107 * t616 - t104 * t618) - (t443 * t689 + t448 * t690);
     const puma560_real_t t692 = t70 * t681 - t73 * t676 + PUMA560_C(0.1254) * (t70 * t682 + t73 * t684);
@@ -994,34 +1059,43 @@ int puma560_forward_dynamics_derivatives(
     const puma560_real_t t713 = t566 * t699 - t565 * t696 - t567 * t701 + t568 * t703;
     ddq_by_q[31] = t713 + t570 * t706 + t572 * t708;
     const puma560_real_t t714 = parameters[ZZ3R] + t418;
+    /* link j4: inertia, momentum beyond */
     const puma560_real_t t715 = t333 * t714 - parameters[YZ3] * t159 + (t457 - t381 - t41 * t398);
     const puma560_real_t t716 = parameters[XZ3] * t159 + t330 * t714 - (t32 * t420 + t34 * t421 + t41 * t404);
+    /* link j3: inertia, momentum beyond */
     const puma560_real_t t717 = t73 * t715 - t70 * t716 + (PUMA560_C(0.1254) * t429 + t41 * t431);
     const puma560_real_t t718 = parameters[ZZ2R] + t447;
+    /* link j2: derivatives */
     const puma560_real_t t719 = PUMA560_C(2.0) * (t717 - (parameters[YZ2] * dq[1] + t155 * t718))
         + (t104 * t689 + t107 * t690);
+    /* link j3: inertia, momentum beyond */
     const puma560_real_t t720 = t70 * t715 + t73 * t716 + (PUMA560_C(0.1254) * t449 - t41 * t436);
+    /* link j2: derivatives */
     const puma560_real_t t721 = PUMA560_C(2.0) * (parameters[XZ2R] * dq[1] + t154 * t718 + t720)
         + (t107 * t689 + t103 * t690);
     const puma560_real_t t722 = PUMA560_C(0.06944177768728742) * (t108 * t719 + t105 * t721);
+    /* link j4: inertia, momentum beyond */
     const puma560_real_t t723 = t407 + t411 + (t406 + (t372 - t387 - t403));
+    /* link j2: derivatives */
     const puma560_real_t t724 = PUMA560_C(2.0) * (t444 - t441 + (t440 + (t723 - (t435 + t439))));
     const puma560_real_t t725 = PUMA560_C(0.04032672714331514) * (t724 + PUMA560_C(2.0) * (t147 * t154
         - t146 * t155));
     const puma560_real_t t726 = PUMA560_C(-468.7608695652174) * parameters[FV2] + t725;
-    const puma560_real_t t727 = PUMA560_C(2.0) * t723;
+    const puma560_real_t t727 = PUMA560_C(2.0) * t723; /* link j3: derivatives */
     const puma560_real_t t728 = t727 + (t82 * t487 - t106 * t485) + PUMA560_C(2.0) * (t142 * t154
         - t141 * t155);
     const puma560_real_t t729 = PUMA560_C(0.08095560645504385) * t728;
-    const puma560_real_t t730 = t32 * t477 + t34 * t478 + t41 * t479;
+    const puma560_real_t t730 = t32 * t477 + t34 * t478 + t41 * t479; /* link j4: derivatives */
     const puma560_real_t t731 = t730 + (t71 * t487 + t132 * t485) + PUMA560_C(2.0) * (t133 * t154
         - t131 * t155);
     const puma560_real_t t732 = PUMA560_C(0.18787994020908783) * t731;
     const puma560_real_t t733 = t726 * t456 - t722 * t454 - t729 * t467 + t732 * t476;
+    /* link j5: derivatives */
     const puma560_real_t t734 = t32 * t498 + t34 * t499 + (t39 * t483 + t51 * t479);
     const puma560_real_t t735 = t734 + (t76 * t487 - t125 * t485) + PUMA560_C(2.0) * (t124 * t155
         - t126 * t154);
     const puma560_real_t t736 = PUMA560_C(0.19862511694053758) * t735;
+    /* link j6: derivatives */
     const puma560_real_t t737 = t32 * t516 + t34 * t517 + (t47 * t483 - t46 * t479);
     const puma560_real_t t738 = t737 + (t74 * t487 - t115 * t485) + PUMA560_C(2.0) * (t117 * t155
         - t116 * t154);
@@ -1043,8 +1117,8 @@ int puma560_forward_dynamics_derivatives(
     ddq_by_input[19] = t546;
     ddq_by_input[25] = t556;
     ddq_by_input[31] = t566;
-    const puma560_real_t t745 = t631 + t621;
-    const puma560_real_t t746 = PUMA560_C(-2.0) * t333;
+    const puma560_real_t t745 = t631 + t621; /* link j4: motion */
+    const puma560_real_t t746 = PUMA560_C(-2.0) * t333; /* link j3: derivatives */
     const puma560_real_t t747 = PUMA560_C(2.0) * t330;
     const puma560_real_t t748 = t409 * t746 + t419 * t747 + (t137 * t745 + (t96 * t586 + t99 * t576));
     const puma560_real_t t749 = t681 + (t748 + t41 * t620);
@@ -1123,8 +1197,8 @@ int puma560_forward_dynamics_derivatives(
     ddq_by_input[32] = t567;
     const puma560_real_t t800 = t50 * t646;
     const puma560_real_t t801 = t8 * t592;
-    const puma560_real_t t802 = t664 + t659;
-    const puma560_real_t t803 = PUMA560_C(-2.0) * t336;
+    const puma560_real_t t802 = t664 + t659; /* link j5: motion */
+    const puma560_real_t t803 = PUMA560_C(-2.0) * t336; /* link j4: derivatives */
     const puma560_real_t t804 = PUMA560_C(2.0) * t331;
     const puma560_real_t t805 = t385 * t803 - t375 * t804 - (t33 * t802 + (t801 - t60 * t580));
     const puma560_real_t t806 = t661 + (t800 - t805);
@@ -1211,8 +1285,8 @@ int puma560_forward_dynamics_derivatives(
     ddq_by_input[21] = t549;
     ddq_by_input[27] = t558;
     ddq_by_input[33] = t568;
-    const puma560_real_t t864 = t653 + t644;
-    const puma560_real_t t865 = PUMA560_C(-2.0) * t340;
+    const puma560_real_t t864 = t653 + t644; /* link j6: motion */
+    const puma560_real_t t865 = PUMA560_C(-2.0) * t340; /* link j5: derivatives */
     const puma560_real_t t866 = PUMA560_C(2.0) * t335;
     const puma560_real_t t867 = t355 * t865 + t363 * t866 + (t12 * t864 + (t22 * t606 + t23 * t596));
     const puma560_real_t t868 = t655 - (t867 + t35 * t649);
@@ -1308,8 +1382,8 @@ int puma560_forward_dynamics_derivatives(
     ddq_by_input[22] = t552;
     ddq_by_input[28] = t561;
     ddq_by_input[34] = t570;
-    const puma560_real_t t937 = t638 + t613;
-    const puma560_real_t t938 = PUMA560_C(2.0) * t338;
+    const puma560_real_t t937 = t638 + t613; /* link j6: force and moment */
+    const puma560_real_t t938 = PUMA560_C(2.0) * t338; /* link j6: derivatives */
     const puma560_real_t t939 = PUMA560_C(-2.0) * t344;
     const puma560_real_t t940 = t343 * t938 + t350 * t939 + (parameters[XY6] * t600 - parameters[XX6R] * t603
         - parameters[XZ6] * t937);

@@ -7,7 +7,7 @@
  * Arm puma560, description e8eb13fe224405b2.
  * SPDX-License-Identifier: 0BSD
  *
- * Operations: 4098 (2250 mul, 1848 add, 0 neg), 6 div, 10 trig, 6 other.
+ * Operations: 4098 (2250 mul, 1848 add, 0 neg), 6 div, 10 trig, 6 other calls (sign, select and the like).
  *
  * @param[in]   q             [6]   [rad]                    joint coordinates; norm at most 10000
  * @param[in]   dq            [6]   [rad/s]                  joint velocities; norm at most 100000
@@ -15,9 +15,9 @@
  *                                                           norm at most 1e+09
  * @param[in]   parameters    [78]                           standard parameters; norm at most 1e+09
  * @param[out]  ddq           [6]   [rad/s^2]                joint accelerations
- * @param[out]  ddq_by_q      [36]  [(rad/s^2) per (rad)]    d ddq / d q; 6 x 6, row-major
+ * @param[out]  ddq_by_q      [36]  [(rad/s^2) per rad]      d ddq / d q; 6 x 6, row-major
  * @param[out]  ddq_by_dq     [36]  [(rad/s^2) per (rad/s)]  d ddq / d dq; 6 x 6, row-major
- * @param[out]  ddq_by_input  [36]  [(rad/s^2) per (A)]      d ddq / d input; 6 x 6, row-major
+ * @param[out]  ddq_by_input  [36]  [(rad/s^2) per A]        d ddq / d input; 6 x 6, row-major
  *
  * Coordinates:
  *
@@ -111,11 +111,11 @@
  */
 #include "puma560_private.h"
 
-#if PUMA560_GENERATION != 0xAC9DC6F4UL
+#if PUMA560_GENERATION != 0x0486C622UL
 #error "puma560.h and puma560_forward_dynamics_derivatives_standard.c are of different generations: generate the arm again"
 #endif
 
-int puma560_forward_dynamics_derivatives_standard(
+puma560_status_t puma560_forward_dynamics_derivatives_standard(
     const puma560_real_t q[PUMA560_N_JOINTS],
     const puma560_real_t dq[PUMA560_N_JOINTS],
     const puma560_real_t input[PUMA560_N_JOINTS],
@@ -129,7 +129,7 @@ int puma560_forward_dynamics_derivatives_standard(
         M2, XX3, XY3, XZ3, YY3, YZ3, ZZ3, MX3, MY3, MZ3, M3, XX4, XY4, XZ4, YY4, YZ4, ZZ4, MX4, MY4, MZ4, M4,
         XX5, XY5, XZ5, YY5, YZ5, ZZ5, MX5, MY5, MZ5, M5, XX6, XY6, XZ6, YY6, YZ6, ZZ6, MX6, MY6, MZ6, M6, FV1,
         FC1, IA1, FV2, FC2, IA2, FV3, FC3, IA3, FV4, FC4, IA4, FV5, FC5, IA5, FV6, FC6, IA6 };
-    int status = PUMA560_STATUS_OK;
+    puma560_status_t status = PUMA560_STATUS_OK;
 
     if (!puma560_within_joints(q, PUMA560_C(1.0e8))
         || !puma560_within_joints(dq, PUMA560_C(1.0e10))
@@ -164,10 +164,11 @@ int puma560_forward_dynamics_derivatives_standard(
         puma560_zero(ddq_by_input, 36);
         return PUMA560_STATUS_PIVOT;
     }
+    /* link j6: column of the mass matrix */
     const puma560_real_t t3 = t1 * parameters[XZ6] + t2 * parameters[YZ6];
     const puma560_real_t t4 = PUMA560_C(1.0) / t0;
     const puma560_real_t t5 = t3 * t4;
-    const puma560_real_t t6 = parameters[YY6] - parameters[XX6];
+    const puma560_real_t t6 = parameters[YY6] - parameters[XX6]; /* link j6: inertia of it and all beyond */
     const puma560_real_t t7 = parameters[XY6] * (PUMA560_C(-2.0) * t1) - t2 * t6;
     const puma560_real_t t8 = t2 * t7;
     const puma560_real_t t9 = parameters[ZZ5] + (parameters[XX6] - t8);
@@ -190,15 +191,18 @@ int puma560_forward_dynamics_derivatives_standard(
     }
     const puma560_real_t t13 = parameters[XY6] + t1 * t7 - parameters[XZ5];
     const puma560_real_t t15 = parameters[YZ5] - t3;
-    const puma560_real_t t17 = t16 * t15 - t14 * t13;
+    const puma560_real_t t17 = t16 * t15 - t14 * t13; /* link j5: column of the mass matrix */
+    /* link j6: column of the mass matrix */
     const puma560_real_t t18 = t1 * parameters[YZ6] - t2 * parameters[XZ6];
     const puma560_real_t t19 = t14 * t18 - t16 * parameters[ZZ6];
     const puma560_real_t t20 = t19 * t5 - t17;
     const puma560_real_t t21 = PUMA560_C(1.0) / t11;
     const puma560_real_t t22 = t20 * t21;
+    /* link j6: inertia of it and all beyond */
     const puma560_real_t t23 = parameters[XX5] + (parameters[YY6] + t8);
     const puma560_real_t t24 = parameters[YY5] + parameters[ZZ6];
     const puma560_real_t t25 = t18 - parameters[XY5];
+    /* link j5: inertia of it and all beyond */
     const puma560_real_t t26 = t16 * (t23 - t24) + t25 * (PUMA560_C(2.0) * t14);
     const puma560_real_t t27 = t16 * t26;
     const puma560_real_t t28 = parameters[ZZ4] + (t23 - t27);
@@ -222,22 +226,24 @@ int puma560_forward_dynamics_derivatives_standard(
     }
     const puma560_real_t t33 = parameters[XZ4] + (t14 * t26 - t25);
     const puma560_real_t t35 = t17 - parameters[YZ4];
+    /* link j6: column of the mass matrix */
     const puma560_real_t t37 = t2 * parameters[MY6] + t1 * parameters[MX6];
-    const puma560_real_t t38 = t37 - parameters[MZ5];
-    const puma560_real_t t39 = parameters[MY4] + t38;
+    const puma560_real_t t38 = t37 - parameters[MZ5]; /* link j6: inertia of it and all beyond */
+    const puma560_real_t t39 = parameters[MY4] + t38; /* link j5: inertia of it and all beyond */
+    /* link j6: column of the mass matrix */
     const puma560_real_t t40 = t1 * parameters[MY6] - t2 * parameters[MX6];
-    const puma560_real_t t41 = parameters[MX5] - t40;
+    const puma560_real_t t41 = parameters[MX5] - t40; /* link j6: inertia of it and all beyond */
     const puma560_real_t t42 = parameters[MY5] + parameters[MZ6];
-    const puma560_real_t t43 = t14 * t42 - t16 * t41;
-    const puma560_real_t t44 = parameters[MX4] - t43;
-    const puma560_real_t t45 = t36 * t39 + t34 * t44;
+    const puma560_real_t t43 = t14 * t42 - t16 * t41; /* link j5: column of the mass matrix */
+    const puma560_real_t t44 = parameters[MX4] - t43; /* link j5: inertia of it and all beyond */
+    const puma560_real_t t45 = t36 * t39 + t34 * t44; /* link j4: column of the mass matrix */
     const puma560_real_t t46 = t34 * t33 - t36 * t35 + PUMA560_C(-0.4318) * t45;
-    const puma560_real_t t47 = t16 * t18 + t14 * parameters[ZZ6];
+    const puma560_real_t t47 = t16 * t18 + t14 * parameters[ZZ6]; /* link j6: column of the mass matrix */
     const puma560_real_t t48 = t16 * t37;
     const puma560_real_t t49 = t34 * t40 - t36 * t48;
     const puma560_real_t t50 = t14 * t37;
     const puma560_real_t t51 = t34 * t47 - t36 * t3 + (PUMA560_C(-0.0203) * t50 + PUMA560_C(-0.4318) * t49);
-    const puma560_real_t t52 = t16 * t13 + t14 * t15;
+    const puma560_real_t t52 = t16 * t13 + t14 * t15; /* link j5: column of the mass matrix */
     const puma560_real_t t53 = t16 * t42 + t14 * t41;
     const puma560_real_t t54 = t36 * t53;
     const puma560_real_t t55 = t34 * t52 + t36 * t9 + (PUMA560_C(-0.0203) * t43 + PUMA560_C(0.4318) * t54);
@@ -247,18 +253,19 @@ int puma560_forward_dynamics_derivatives_standard(
     const puma560_real_t t59 = t57 * t58;
     const puma560_real_t t60 = t56 * t21;
     const puma560_real_t t61 = t51 * t4;
-    const puma560_real_t t62 = parameters[XX4] + (t24 + t27);
+    const puma560_real_t t62 = parameters[XX4] + (t24 + t27); /* link j5: inertia of it and all beyond */
     const puma560_real_t t63 = parameters[YY4] + t9;
     const puma560_real_t t64 = parameters[XY4] + t52;
+    /* link j4: inertia of it and all beyond */
     const puma560_real_t t65 = t36 * (t62 - t63) + t64 * (PUMA560_C(-2.0) * t34);
     const puma560_real_t t66 = t36 * t65;
-    const puma560_real_t t67 = t34 * t39 - t36 * t44;
-    const puma560_real_t t68 = parameters[M5] + parameters[M6];
-    const puma560_real_t t69 = parameters[M4] + t68;
-    const puma560_real_t t70 = PUMA560_C(0.0203) * t69;
+    const puma560_real_t t67 = t34 * t39 - t36 * t44; /* link j4: column of the mass matrix */
+    const puma560_real_t t68 = parameters[M5] + parameters[M6]; /* link j6: inertia of it and all beyond */
+    const puma560_real_t t69 = parameters[M4] + t68; /* link j5: inertia of it and all beyond */
+    const puma560_real_t t70 = PUMA560_C(0.0203) * t69; /* link j4: inertia of it and all beyond */
     const puma560_real_t t71 = PUMA560_C(0.0203) * (t70 + PUMA560_C(-2.0) * t67);
-    const puma560_real_t t72 = parameters[MZ4] + t53;
-    const puma560_real_t t73 = PUMA560_C(0.4318) * t69;
+    const puma560_real_t t72 = parameters[MZ4] + t53; /* link j5: inertia of it and all beyond */
+    const puma560_real_t t73 = PUMA560_C(0.4318) * t69; /* link j4: inertia of it and all beyond */
     const puma560_real_t t74 = PUMA560_C(0.4318) * (t73 + PUMA560_C(2.0) * t72);
     const puma560_real_t t75 = parameters[ZZ3] + (t62 - t66 + (t71 + t74));
     const puma560_real_t t76 = t75 + PUMA560_C(2884.36665969) * parameters[IA3];
@@ -278,19 +285,19 @@ int puma560_forward_dynamics_derivatives_standard(
         puma560_zero(ddq_by_input, 36);
         return PUMA560_STATUS_PIVOT;
     }
-    const puma560_real_t t80 = t79 * t45;
+    const puma560_real_t t80 = t79 * t45; /* link j4: column of the mass matrix */
     const puma560_real_t t81 = t46 + PUMA560_C(0.4318) * t80;
-    const puma560_real_t t83 = t82 * t50 - t79 * t49;
+    const puma560_real_t t83 = t82 * t50 - t79 * t49; /* link j6: column of the mass matrix */
     const puma560_real_t t84 = t51 + PUMA560_C(-0.4318) * t83;
-    const puma560_real_t t85 = t79 * t54 + t82 * t43;
+    const puma560_real_t t85 = t79 * t54 + t82 * t43; /* link j5: column of the mass matrix */
     const puma560_real_t t86 = t55 + PUMA560_C(-0.4318) * t85;
     const puma560_real_t t87 = t86 + t84 * t5;
     const puma560_real_t t88 = t81 - t84 * t30 - t87 * t22;
-    const puma560_real_t t89 = t67 - t70;
+    const puma560_real_t t89 = t67 - t70; /* link j4: inertia of it and all beyond */
     const puma560_real_t t90 = t89 - parameters[MX3];
     const puma560_real_t t91 = t72 + t73;
     const puma560_real_t t92 = parameters[MY3] + t91;
-    const puma560_real_t t93 = t79 * t92 + t82 * t90;
+    const puma560_real_t t93 = t79 * t92 + t82 * t90; /* link j3: column of the mass matrix */
     const puma560_real_t t94 = PUMA560_C(0.4318) * t93 - t75;
     const puma560_real_t t95 = t94 + t84 * t61 + t87 * t60 - t88 * t59;
     const puma560_real_t t96 = PUMA560_C(-1.0) / t77;
@@ -298,8 +305,8 @@ int puma560_forward_dynamics_derivatives_standard(
     const puma560_real_t t98 = t88 * t58;
     const puma560_real_t t99 = t87 * t21;
     const puma560_real_t t100 = t84 * t4;
-    const puma560_real_t t101 = parameters[M3] + t69;
-    const puma560_real_t t102 = PUMA560_C(0.4318) * t101;
+    const puma560_real_t t101 = parameters[M3] + t69; /* link j4: inertia of it and all beyond */
+    const puma560_real_t t102 = PUMA560_C(0.4318) * t101; /* link j3: inertia of it and all beyond */
     const puma560_real_t t103 = PUMA560_C(0.4318) * (t102 + PUMA560_C(-2.0) * t93);
     const puma560_real_t t104 = parameters[ZZ2] + (t75 + t103);
     const puma560_real_t t105 = t104 + PUMA560_C(11624.074225) * parameters[IA2];
@@ -320,23 +327,28 @@ int puma560_forward_dynamics_derivatives_standard(
         puma560_zero(ddq_by_input, 36);
         return PUMA560_STATUS_PIVOT;
     }
+    /* link j4: inertia of it and all beyond */
     const puma560_real_t t109 = parameters[XX3] + (t63 + t66 + t74);
     const puma560_real_t t110 = parameters[YY3] + (t28 + t71);
-    const puma560_real_t t111 = t36 * t33 + t34 * t35;
+    const puma560_real_t t111 = t36 * t33 + t34 * t35; /* link j4: column of the mass matrix */
+    /* link j4: inertia of it and all beyond */
     const puma560_real_t t112 = parameters[XY3] + (t111 + (PUMA560_C(-0.0203) * t72
         + PUMA560_C(0.4318) * t89));
+    /* link j3: inertia of it and all beyond */
     const puma560_real_t t113 = t82 * (t109 - t110) - t112 * (PUMA560_C(2.0) * t79);
     const puma560_real_t t114 = t82 * t113;
-    const puma560_real_t t115 = t45 - parameters[MZ3];
-    const puma560_real_t t116 = PUMA560_C(0.1254) * t101;
+    const puma560_real_t t115 = t45 - parameters[MZ3]; /* link j4: inertia of it and all beyond */
+    const puma560_real_t t116 = PUMA560_C(0.1254) * t101; /* link j3: inertia of it and all beyond */
     const puma560_real_t t117 = PUMA560_C(0.1254) * (t116 + PUMA560_C(-2.0) * t115);
     const puma560_real_t t118 = parameters[XX2] + (t110 + t114 + t117);
     const puma560_real_t t119 = parameters[YY2] + (t109 - t114 + (t103 + t117));
-    const puma560_real_t t121 = t79 * t90 - t82 * t92;
+    const puma560_real_t t121 = t79 * t90 - t82 * t92; /* link j3: column of the mass matrix */
+    /* link j3: inertia of it and all beyond */
     const puma560_real_t t122 = parameters[XY2] + (t112 + t79 * t113 + PUMA560_C(0.4318) * t121);
+    /* link j2: inertia of it and all beyond */
     const puma560_real_t t124 = t120 * (t120 * (t119 - t118) + t122 * (PUMA560_C(2.0) * t123));
     const puma560_real_t t125 = parameters[ZZ1] + (t118 + t124) + PUMA560_C(3920.14984321) * parameters[IA1];
-    const puma560_real_t t126 = t34 * t48 + t36 * t40;
+    const puma560_real_t t126 = t34 * t48 + t36 * t40; /* link j6: column of the mass matrix */
     const puma560_real_t t127 = PUMA560_C(0.4318) * t126;
     const puma560_real_t t128 = t127 - (t36 * t47 + t34 * t3);
     const puma560_real_t t129 = t19 + PUMA560_C(0.0203) * t126;
@@ -345,7 +357,7 @@ int puma560_forward_dynamics_derivatives_standard(
     const puma560_real_t t132 = t82 * t128 + t79 * t129 + PUMA560_C(0.1254) * t83;
     const puma560_real_t t133 = t123 * t132 + t120 * t131;
     const puma560_real_t t134 = t133 * t4;
-    const puma560_real_t t135 = t34 * t53;
+    const puma560_real_t t135 = t34 * t53; /* link j5: column of the mass matrix */
     const puma560_real_t t136 = PUMA560_C(0.4318) * t135;
     const puma560_real_t t137 = t34 * t9 - t36 * t52 + t136;
     const puma560_real_t t138 = t17 - PUMA560_C(0.0203) * t135;
@@ -354,7 +366,7 @@ int puma560_forward_dynamics_derivatives_standard(
     const puma560_real_t t141 = t79 * t137 + t82 * t138 - (t136 + PUMA560_C(-0.1254) * t140);
     const puma560_real_t t142 = t123 * t139 + t120 * t141 + t133 * t5;
     const puma560_real_t t143 = t142 * t21;
-    const puma560_real_t t144 = PUMA560_C(0.4318) * t67;
+    const puma560_real_t t144 = PUMA560_C(0.4318) * t67; /* link j4: column of the mass matrix */
     const puma560_real_t t145 = t111 + t144;
     const puma560_real_t t146 = t28 - PUMA560_C(0.0203) * t67;
     const puma560_real_t t147 = t79 * t146 - t82 * t145 + PUMA560_C(-0.1254) * t80;
@@ -363,15 +375,16 @@ int puma560_forward_dynamics_derivatives_standard(
     const puma560_real_t t150 = t123 * t147 + t120 * t149 - t133 * t30 - t142 * t22;
     const puma560_real_t t151 = t150 * t58;
     const puma560_real_t t152 = t125 - t133 * t134 - t142 * t143 - t150 * t151;
+    /* link j4: inertia of it and all beyond */
     const puma560_real_t t153 = t64 + t34 * t65 + PUMA560_C(-0.0203) * t45 - parameters[XZ3];
     const puma560_real_t t154 = t46 - parameters[YZ3];
-    const puma560_real_t t155 = t82 * t153 - t79 * t154;
+    const puma560_real_t t155 = t82 * t153 - t79 * t154; /* link j3: column of the mass matrix */
     const puma560_real_t t156 = t155 + PUMA560_C(-0.1254) * t93;
     const puma560_real_t t157 = t79 * t153 + t82 * t154 + PUMA560_C(-0.1254) * t121;
     const puma560_real_t t158 = t123 * t156 + t120 * t157 + t133 * t61 + t142 * t60;
     const puma560_real_t t159 = t158 - t150 * t59;
     const puma560_real_t t160 = t159 * t96;
-    const puma560_real_t t161 = t93 - t102;
+    const puma560_real_t t161 = t93 - t102; /* link j3: inertia of it and all beyond */
     const puma560_real_t t162 = t155 + (PUMA560_C(-0.4318) * t115 + PUMA560_C(-0.1254) * t161)
         - parameters[XZ2];
     const puma560_real_t t163 = t157 - parameters[YZ2];
@@ -395,86 +408,90 @@ int puma560_forward_dynamics_derivatives_standard(
         puma560_zero(ddq_by_input, 36);
         return PUMA560_STATUS_PIVOT;
     }
-    const puma560_real_t t170 = t123 * dq[0];
+    const puma560_real_t t170 = t123 * dq[0]; /* link j2: motion */
     const puma560_real_t t171 = t120 * dq[0];
-    const puma560_real_t t172 = t82 * t170 + t79 * t171;
+    const puma560_real_t t172 = t82 * t170 + t79 * t171; /* link j3: motion */
     const puma560_real_t t173 = t79 * t170 - t82 * t171;
     const puma560_real_t t174 = t172 * t173;
     const puma560_real_t t175 = dq[1] + dq[2];
     const puma560_real_t t176 = t175 * t173;
-    const puma560_real_t t177 = PUMA560_C(-2.0) * t176;
+    const puma560_real_t t177 = PUMA560_C(-2.0) * t176; /* link j4: motion */
     const puma560_real_t t178 = t34 * t177 - t36 * t174;
     const puma560_real_t t179 = t34 * t175;
     const puma560_real_t t180 = t179 + t36 * t172;
     const puma560_real_t t181 = dq[3] + t173;
     const puma560_real_t t182 = t180 * t181;
     const puma560_real_t t183 = t178 + t182;
-    const puma560_real_t t184 = t16 * t180 - t14 * t181;
+    const puma560_real_t t184 = t16 * t180 - t14 * t181; /* link j5: motion */
     const puma560_real_t t185 = t14 * t180 + t16 * t181;
     const puma560_real_t t186 = t184 * t185;
-    const puma560_real_t t187 = t183 - t186;
-    const puma560_real_t t188 = t34 * t174 + t36 * t177;
+    const puma560_real_t t187 = t183 - t186; /* link j6: motion */
+    const puma560_real_t t188 = t34 * t174 + t36 * t177; /* link j4: motion */
     const puma560_real_t t189 = t36 * t175;
     const puma560_real_t t190 = t189 - t34 * t172;
     const puma560_real_t t191 = t190 * t181;
     const puma560_real_t t192 = t188 + t191;
-    const puma560_real_t t193 = t191 + t192;
-    const puma560_real_t t194 = t180 * t190;
-    const puma560_real_t t195 = t175 * t172;
-    const puma560_real_t t196 = t194 - t195;
+    const puma560_real_t t193 = t191 + t192; /* link j5: motion */
+    const puma560_real_t t194 = t180 * t190; /* link j4: motion */
+    const puma560_real_t t195 = t175 * t172; /* link j3: motion */
+    const puma560_real_t t196 = t194 - t195; /* link j5: motion */
     const puma560_real_t t197 = t14 * t196 + t16 * t193;
     const puma560_real_t t198 = dq[4] + t190;
     const puma560_real_t t199 = t185 * t198;
     const puma560_real_t t200 = t197 - t199;
-    const puma560_real_t t201 = t200 - t199;
+    const puma560_real_t t201 = t200 - t199; /* link j6: motion */
     const puma560_real_t t202 = t1 * t187 - t2 * t201;
     const puma560_real_t t203 = t1 * t184 - t2 * t198;
     const puma560_real_t t204 = dq[5] + t185;
     const puma560_real_t t205 = t203 * t204;
     const puma560_real_t t206 = t202 + t205;
-    const puma560_real_t t207 = parameters[ZZ6] - parameters[YY6];
-    const puma560_real_t t208 = t2 * t187 + t1 * t201;
+    const puma560_real_t t207 = parameters[ZZ6] - parameters[YY6]; /* link j6: force and moment */
+    const puma560_real_t t208 = t2 * t187 + t1 * t201; /* link j6: motion */
     const puma560_real_t t209 = t2 * t184 + t1 * t198;
     const puma560_real_t t210 = t209 * t204;
     const puma560_real_t t211 = t208 + t210;
-    const puma560_real_t t212 = t210 + t211;
-    const puma560_real_t t213 = t14 * t193 - t16 * t196;
+    const puma560_real_t t212 = t210 + t211; /* link j6: force and moment */
+    const puma560_real_t t213 = t14 * t193 - t16 * t196; /* link j5: motion */
     const puma560_real_t t214 = t184 * t198;
     const puma560_real_t t215 = t213 + t214;
-    const puma560_real_t t216 = t209 * t203;
-    const puma560_real_t t217 = t215 - t216;
+    const puma560_real_t t216 = t209 * t203; /* link j6: motion */
+    const puma560_real_t t217 = t215 - t216; /* link j6: force and moment */
     const puma560_real_t t218 = parameters[XX6] * t206 + t205 * t207 + parameters[XY6] * t212
         + parameters[XZ6] * t217;
-    const puma560_real_t t219 = t203 * t203;
+    const puma560_real_t t219 = t203 * t203; /* link j6: motion */
     const puma560_real_t t220 = t204 * t204;
-    const puma560_real_t t221 = t173 * t173;
+    const puma560_real_t t221 = t173 * t173; /* link j3: motion */
     const puma560_real_t t222 = t175 * t175;
-    const puma560_real_t t223 = t222 + t221;
-    const puma560_real_t t224 = t171 * t171;
+    const puma560_real_t t223 = t222 + t221; /* link j4: motion */
+    const puma560_real_t t224 = t171 * t171; /* link j2: motion */
     const puma560_real_t t225 = dq[1] * dq[1];
-    const puma560_real_t t226 = PUMA560_C(0.4318) * (t224 + t225);
-    const puma560_real_t t227 = PUMA560_C(9.81) * t123;
-    const puma560_real_t t228 = t227 + t226;
-    const puma560_real_t t229 = t170 * t171;
+    const puma560_real_t t226 = PUMA560_C(0.4318) * (t224 + t225); /* link j3: motion */
+    const puma560_real_t t227 = PUMA560_C(9.81) * t123; /* link j2: motion */
+    const puma560_real_t t228 = t227 + t226; /* link j3: columns */
+    const puma560_real_t t229 = t170 * t171; /* link j2: motion */
     const puma560_real_t t230 = PUMA560_C(-9.81) * t120;
-    const puma560_real_t t231 = t230 + PUMA560_C(0.4318) * t229;
+    const puma560_real_t t231 = t230 + PUMA560_C(0.4318) * t229; /* link j3: motion */
     const puma560_real_t t232 = t79 * t231 - t82 * t228;
+    /* link j4: motion */
     const puma560_real_t t233 = t232 + (PUMA560_C(-0.0203) * t223 + PUMA560_C(-0.4318) * t174);
-    const puma560_real_t t234 = t170 * t170;
-    const puma560_real_t t235 = t234 + t224;
+    const puma560_real_t t234 = t170 * t170; /* link j2: motion */
+    const puma560_real_t t235 = t234 + t224; /* link j3: motion */
     const puma560_real_t t236 = PUMA560_C(-0.1254) * t235;
-    const puma560_real_t t237 = dq[1] * t170;
-    const puma560_real_t t238 = PUMA560_C(0.8636) * t237 - t236;
+    const puma560_real_t t237 = dq[1] * t170; /* link j2: motion */
+    const puma560_real_t t238 = PUMA560_C(0.8636) * t237 - t236; /* link j3: motion */
+    /* link j4: motion */
     const puma560_real_t t239 = t238 + (PUMA560_C(0.0406) * t195 - PUMA560_C(0.8636) * t176);
     const puma560_real_t t240 = t36 * t233 + t34 * t239;
-    const puma560_real_t t241 = t172 * t172;
-    const puma560_real_t t242 = t222 + t241;
-    const puma560_real_t t243 = t79 * t228 + t82 * t231;
+    const puma560_real_t t241 = t172 * t172; /* link j3: motion */
+    const puma560_real_t t242 = t222 + t241; /* link j4: motion */
+    const puma560_real_t t243 = t79 * t228 + t82 * t231; /* link j3: motion */
+    /* link j4: motion */
     const puma560_real_t t244 = t243 - (PUMA560_C(0.0203) * t174 + PUMA560_C(0.4318) * t242);
-    const puma560_real_t t245 = t16 * t240 + t14 * t244;
-    const puma560_real_t t246 = t34 * t233 - t36 * t239;
-    const puma560_real_t t247 = t1 * t245 + t2 * t246;
-    const puma560_real_t t248 = t14 * t240 - t16 * t244;
+    const puma560_real_t t245 = t16 * t240 + t14 * t244; /* link j5: motion */
+    const puma560_real_t t246 = t34 * t233 - t36 * t239; /* link j4: motion */
+    const puma560_real_t t247 = t1 * t245 + t2 * t246; /* link j6: motion */
+    const puma560_real_t t248 = t14 * t240 - t16 * t244; /* link j5: motion */
+    /* link j6: force and moment */
     const puma560_real_t t249 = t218 + parameters[YZ6] * (t219 - t220) + (parameters[MZ6] * t247
         - parameters[MY6] * t248);
     const puma560_real_t t250 = parameters[XX6] - parameters[ZZ6];
@@ -482,152 +499,183 @@ int puma560_forward_dynamics_derivatives_standard(
     const puma560_real_t t252 = t215 + t216;
     const puma560_real_t t253 = parameters[YY6] * t211 - t210 * t250 + parameters[XY6] * t251
         + parameters[YZ6] * t252;
-    const puma560_real_t t254 = t209 * t209;
+    const puma560_real_t t254 = t209 * t209; /* link j6: motion */
     const puma560_real_t t255 = t2 * t245 - t1 * t246;
+    /* link j6: force and moment */
     const puma560_real_t t256 = t253 + parameters[XZ6] * (t220 - t254) + (parameters[MZ6] * t255
         + parameters[MX6] * t248);
-    const puma560_real_t t257 = parameters[YY5] - parameters[ZZ5];
-    const puma560_real_t t258 = t214 + t215;
+    const puma560_real_t t257 = parameters[YY5] - parameters[ZZ5]; /* link j5: force and moment */
+    const puma560_real_t t258 = t214 + t215; /* link j6: motion */
     const puma560_real_t t259 = t183 + t186;
+    /* link j5: force and moment */
     const puma560_real_t t260 = parameters[XY5] * t258 - (parameters[XX5] * t200 + t199 * t257)
         - parameters[XZ5] * t259;
-    const puma560_real_t t261 = t185 * t185;
+    const puma560_real_t t261 = t185 * t185; /* link j5: motion */
     const puma560_real_t t262 = t198 * t198;
+    /* link j5: force and moment */
     const puma560_real_t t263 = t260 + parameters[YZ5] * (t261 - t262) + (parameters[MY5] * t246
         + parameters[MZ5] * t248);
-    const puma560_real_t t264 = t263 - (t1 * t256 - t2 * t249);
-    const puma560_real_t t265 = parameters[XX5] - parameters[ZZ5];
+    const puma560_real_t t264 = t263 - (t1 * t256 - t2 * t249); /* link j6: what it passes on */
+    const puma560_real_t t265 = parameters[XX5] - parameters[ZZ5]; /* link j5: force and moment */
     const puma560_real_t t266 = t214 * t265 - parameters[YY5] * t215 + parameters[XY5] * t201
         + parameters[YZ5] * t187;
-    const puma560_real_t t267 = t184 * t184;
+    const puma560_real_t t267 = t184 * t184; /* link j5: motion */
+    /* link j5: force and moment */
     const puma560_real_t t268 = t266 + parameters[XZ5] * (t267 - t262) + (parameters[MX5] * t246
         - parameters[MZ5] * t245);
+    /* link j6: force and moment */
     const puma560_real_t t269 = t6 * t216 - parameters[ZZ6] * t215 - parameters[YZ6] * t208
         - parameters[XZ6] * t202;
     const puma560_real_t t270 = t269 + parameters[XY6] * (t219 - t254) + (parameters[MX6] * t247
         + parameters[MY6] * t255);
-    const puma560_real_t t271 = t268 + t270;
-    const puma560_real_t t272 = parameters[YY4] - parameters[ZZ4];
-    const puma560_real_t t273 = t182 + t183;
+    const puma560_real_t t271 = t268 + t270; /* link j6: what it passes on */
+    const puma560_real_t t272 = parameters[YY4] - parameters[ZZ4]; /* link j4: force and moment */
+    const puma560_real_t t273 = t182 + t183; /* link j5: motion */
     const puma560_real_t t274 = t195 + t194;
+    /* link j4: force and moment */
     const puma560_real_t t275 = t191 * t272 - parameters[XX4] * t192 + parameters[XY4] * t273
         + parameters[XZ4] * t274;
-    const puma560_real_t t276 = t190 * t190;
+    const puma560_real_t t276 = t190 * t190; /* link j4: motion */
     const puma560_real_t t277 = t181 * t181;
+    /* link j4: force and moment */
     const puma560_real_t t278 = t275 + parameters[YZ4] * (t276 - t277) + (parameters[MY4] * t244
         + parameters[MZ4] * t246);
-    const puma560_real_t t279 = t278 + (t16 * t264 + t14 * t271);
-    const puma560_real_t t280 = parameters[XX5] - parameters[YY5];
+    const puma560_real_t t279 = t278 + (t16 * t264 + t14 * t271); /* link j5: what it passes on */
+    const puma560_real_t t280 = parameters[XX5] - parameters[YY5]; /* link j5: force and moment */
     const puma560_real_t t281 = parameters[ZZ5] * t183 - t186 * t280 - parameters[YZ5] * t213
         + parameters[XZ5] * t197;
     const puma560_real_t t282 = t281 + parameters[XY5] * (t261 - t267) + (parameters[MX5] * t248
         + parameters[MY5] * t245);
-    const puma560_real_t t283 = t282 + (t1 * t249 + t2 * t256);
-    const puma560_real_t t284 = parameters[XX4] - parameters[ZZ4];
+    const puma560_real_t t283 = t282 + (t1 * t249 + t2 * t256); /* link j6: what it passes on */
+    const puma560_real_t t284 = parameters[XX4] - parameters[ZZ4]; /* link j4: force and moment */
     const puma560_real_t t285 = t182 * t284 - parameters[YY4] * t183 + parameters[XY4] * t193
         + parameters[YZ4] * t196;
-    const puma560_real_t t286 = t180 * t180;
+    const puma560_real_t t286 = t180 * t180; /* link j4: motion */
+    /* link j4: force and moment */
     const puma560_real_t t287 = t285 + parameters[XZ4] * (t286 - t277) + (parameters[MX4] * t244
         - parameters[MZ4] * t240);
-    const puma560_real_t t288 = t287 - t283;
+    const puma560_real_t t288 = t287 - t283; /* link j5: what it passes on */
+    /* link j6: force and moment */
     const puma560_real_t t289 = parameters[MX6] * (t219 + t220) + parameters[MY6] * t252
         - parameters[MZ6] * t208;
     const puma560_real_t t290 = t289 - parameters[M6] * t255;
     const puma560_real_t t291 = parameters[MX6] * t217 - parameters[MY6] * (t254 + t220)
         - parameters[MZ6] * t202;
     const puma560_real_t t292 = t291 - parameters[M6] * t247;
+    /* link j5: force and moment */
     const puma560_real_t t293 = parameters[MX5] * (t261 + t262) - parameters[MY5] * t187
         - parameters[MZ5] * t213;
+    /* link j6: what it passes on */
     const puma560_real_t t294 = t293 - parameters[M5] * t245 + (t2 * t290 + t1 * t292);
+    /* link j5: force and moment */
     const puma560_real_t t295 = parameters[MX5] * t259 + parameters[MY5] * (t267 + t262)
         - parameters[MZ5] * t197;
+    /* link j6: force and moment */
     const puma560_real_t t296 = parameters[MX6] * t212 - parameters[MY6] * t251 + parameters[MZ6] * (t254
         + t219);
+    /* link j6: what it passes on */
     const puma560_real_t t297 = parameters[M5] * t248 + t295 + (parameters[M6] * t248 + t296);
+    /* link j4: force and moment */
     const puma560_real_t t298 = parameters[MY4] * t196 - parameters[MX4] * (t276 + t277)
         + parameters[MZ4] * t178;
+    /* link j5: what it passes on */
     const puma560_real_t t299 = parameters[M4] * t240 + t298 + (t14 * t297 - t16 * t294);
+    /* link j5: force and moment */
     const puma560_real_t t300 = parameters[MX5] * t258 + parameters[MY5] * t201 + parameters[MZ5] * (t267
         + t261);
+    /* link j6: what it passes on */
     const puma560_real_t t301 = t300 - parameters[M5] * t246 - (t1 * t290 - t2 * t292);
+    /* link j4: force and moment */
     const puma560_real_t t302 = parameters[MX4] * t274 - parameters[MY4] * (t286 + t277)
         + parameters[MZ4] * t188;
-    const puma560_real_t t303 = t302 - parameters[M4] * t246 + t301;
-    const puma560_real_t t304 = t34 * t299 + t36 * t303;
-    const puma560_real_t t305 = parameters[ZZ3] - parameters[YY3];
-    const puma560_real_t t306 = PUMA560_C(2.0) * t195;
+    const puma560_real_t t303 = t302 - parameters[M4] * t246 + t301; /* link j5: what it passes on */
+    const puma560_real_t t304 = t34 * t299 + t36 * t303; /* link j4: what it passes on */
+    const puma560_real_t t305 = parameters[ZZ3] - parameters[YY3]; /* link j3: force and moment */
+    const puma560_real_t t306 = PUMA560_C(2.0) * t195; /* link j4: motion */
+    /* link j3: force and moment */
     const puma560_real_t t307 = parameters[XX3] * t176 + t176 * t305 + parameters[XY3] * t306
         - parameters[XZ3] * t174;
     const puma560_real_t t308 = t307 + parameters[YZ3] * (t221 - t222) - (parameters[MY3] * t238
         + parameters[MZ3] * t243);
+    /* link j4: what it passes on */
     const puma560_real_t t309 = t308 + (t36 * t279 + t34 * t288 + PUMA560_C(-0.4318) * t304);
-    const puma560_real_t t310 = parameters[XX4] - parameters[YY4];
+    const puma560_real_t t310 = parameters[XX4] - parameters[YY4]; /* link j4: force and moment */
     const puma560_real_t t311 = t194 * t310 - parameters[ZZ4] * t195 - parameters[YZ4] * t178
         + parameters[XZ4] * t188;
     const puma560_real_t t312 = t311 + parameters[XY4] * (t276 - t286) + (parameters[MX4] * t246
         + parameters[MY4] * t240);
-    const puma560_real_t t313 = t312 + (t16 * t271 - t14 * t264);
-    const puma560_real_t t314 = parameters[XX3] - parameters[ZZ3];
+    const puma560_real_t t313 = t312 + (t16 * t271 - t14 * t264); /* link j5: what it passes on */
+    const puma560_real_t t314 = parameters[XX3] - parameters[ZZ3]; /* link j3: force and moment */
     const puma560_real_t t315 = parameters[YY3] * t195 - t195 * t314 - parameters[XY3] * t177
         + parameters[YZ3] * t174;
     const puma560_real_t t316 = t315 + parameters[XZ3] * (t222 - t241) + (parameters[MZ3] * t232
         + parameters[MX3] * t238);
-    const puma560_real_t t317 = t316 - (t313 + PUMA560_C(-0.0203) * t304);
+    const puma560_real_t t317 = t316 - (t313 + PUMA560_C(-0.0203) * t304); /* link j4: what it passes on */
     const puma560_real_t t318 = t36 * t299 - t34 * t303;
     const puma560_real_t t319 = parameters[MX3] * t223 + parameters[MY3] * t174 - parameters[M3] * t232
         - t318;
+    /* link j4: force and moment */
     const puma560_real_t t320 = parameters[MX4] * t273 + parameters[MY4] * t193 + parameters[MZ4] * (t286
         + t276);
+    /* link j5: what it passes on */
     const puma560_real_t t321 = t320 - parameters[M4] * t244 + (t14 * t294 + t16 * t297);
+    /* link j4: what it passes on */
     const puma560_real_t t322 = parameters[MX3] * t174 + parameters[MY3] * t242 - parameters[M3] * t243
         + t321;
-    const puma560_real_t t323 = t79 * t319 + t82 * t322;
-    const puma560_real_t t324 = dq[1] * t171;
-    const puma560_real_t t325 = t324 * (parameters[YY2] - parameters[ZZ2]);
+    const puma560_real_t t323 = t79 * t319 + t82 * t322; /* link j3: what it passes on */
+    const puma560_real_t t324 = dq[1] * t171; /* link j2: motion */
+    const puma560_real_t t325 = t324 * (parameters[YY2] - parameters[ZZ2]); /* link j2: force and moment */
     const puma560_real_t t326 = t325 - t324 * parameters[XX2] + PUMA560_C(2.0) * t237 * parameters[XY2]
         + t229 * parameters[XZ2];
     const puma560_real_t t327 = (t224 - t225) * parameters[YZ2];
     const puma560_real_t t328 = t230 * parameters[MZ2];
+    /* link j3: what it passes on */
     const puma560_real_t t329 = t326 + t327 - t328 + (t82 * t309 - t79 * t317 + PUMA560_C(0.1254) * t323);
+    /* link j3: force and moment */
     const puma560_real_t t330 = parameters[MX3] * t306 + parameters[MY3] * t177 + parameters[MZ3] * (t241
         + t221);
+    /* link j3: what it passes on */
     const puma560_real_t t331 = PUMA560_C(0.1254) * (t79 * t322 - t82 * t319)
         + PUMA560_C(0.4318) * (parameters[M3] * t238 + t330 + t304);
-    const puma560_real_t t332 = t237 * (parameters[XX2] - parameters[ZZ2]);
+    const puma560_real_t t332 = t237 * (parameters[XX2] - parameters[ZZ2]); /* link j2: force and moment */
     const puma560_real_t t333 = t237 * parameters[YY2] - t332 + PUMA560_C(-2.0) * t324 * parameters[XY2]
         - t229 * parameters[YZ2];
     const puma560_real_t t334 = (t234 - t225) * parameters[XZ2];
     const puma560_real_t t335 = t227 * parameters[MZ2];
+    /* link j3: what it passes on */
     const puma560_real_t t336 = t333 - t334 - t335 + (t79 * t309 + t82 * t317 + t331);
-    const puma560_real_t t337 = puma560_sign(dq[0]);
+    const puma560_real_t t337 = puma560_sign(dq[0]); /* joint j1: coulomb_friction */
     const puma560_real_t t338 = PUMA560_C(62.6111) * (PUMA560_C(-62.6111) * dq[0] * parameters[FV1]
         - t337 * parameters[FC1]) + (t123 * t329 + t120 * t336);
-    const puma560_real_t t339 = puma560_sign(dq[5]);
+    const puma560_real_t t339 = puma560_sign(dq[5]); /* joint j6: coulomb_friction */
     const puma560_real_t t340 = PUMA560_C(76.686) * (PUMA560_C(-76.686) * dq[5] * parameters[FV6]
         - t339 * parameters[FC6]) + t270;
     const puma560_real_t t341 = PUMA560_C(5.368020000000001) * input[5] + t340;
-    const puma560_real_t t342 = puma560_sign(dq[4]);
+    const puma560_real_t t342 = puma560_sign(dq[4]); /* joint j5: coulomb_friction */
     const puma560_real_t t343 = PUMA560_C(71.923) * (PUMA560_C(-71.923) * dq[4] * parameters[FV5]
         - t342 * parameters[FC5]) + t283;
     const puma560_real_t t344 = PUMA560_C(5.034610000000001) * input[4] + t343 + t341 * t5;
     const puma560_real_t t345 = PUMA560_C(-14.400553) * input[0] + t338 + t341 * t134 + t344 * t143;
-    const puma560_real_t t346 = puma560_sign(dq[3]);
+    const puma560_real_t t346 = puma560_sign(dq[3]); /* joint j4: coulomb_friction */
     const puma560_real_t t347 = PUMA560_C(76.0364) * (PUMA560_C(-76.0364) * dq[3] * parameters[FV4]
         - t346 * parameters[FC4]) + t313;
     const puma560_real_t t348 = PUMA560_C(5.322548) * input[3] + t347 + t341 * t30 + t344 * t22;
+    /* link j4: what it passes on */
     const puma560_real_t t349 = t34 * t279 - t36 * t288 + (PUMA560_C(0.0203) * t321
         + PUMA560_C(0.4318) * t318);
+    /* link j3: force and moment */
     const puma560_real_t t350 = t174 * (parameters[YY3] - parameters[XX3]) + parameters[XY3] * (t221 - t241)
         + (parameters[MY3] * t232 - parameters[MX3] * t243);
-    const puma560_real_t t351 = t350 + t349;
-    const puma560_real_t t352 = puma560_sign(dq[2]);
+    const puma560_real_t t351 = t350 + t349; /* link j4: what it passes on */
+    const puma560_real_t t352 = puma560_sign(dq[2]); /* joint j3: coulomb_friction */
     const puma560_real_t t353 = PUMA560_C(53.7063) * (PUMA560_C(-53.7063) * dq[2] * parameters[FV3]
         - t352 * parameters[FC3]) + t351;
     const puma560_real_t t354 = PUMA560_C(-12.352449) * input[2] + t353 - t341 * t61 - t344 * t60;
     const puma560_real_t t355 = t354 - t348 * t59;
+    /* link j2: force and moment */
     const puma560_real_t t356 = t229 * (parameters[XX2] - parameters[YY2]) + (t224 - t234) * parameters[XY2]
         - (t230 * parameters[MX2] + t227 * parameters[MY2]);
-    const puma560_real_t t357 = puma560_sign(dq[1]);
+    const puma560_real_t t357 = puma560_sign(dq[1]); /* joint j2: coulomb_friction */
     const puma560_real_t t358 = PUMA560_C(107.815) * (PUMA560_C(-107.815) * dq[1] * parameters[FV2]
         - t357 * parameters[FC2]) + (t356 + (t351 + PUMA560_C(0.4318) * t323));
     const puma560_real_t t359 = PUMA560_C(24.79745) * input[1] + t358 - t341 * t100 - t344 * t99;
@@ -648,19 +696,19 @@ int puma560_forward_dynamics_derivatives_standard(
     const puma560_real_t t369 = t341 * t4 + t134 * t363 - t100 * t364 - t61 * t365;
     const puma560_real_t t370 = puma560_bounded(t369 + t30 * t366 + t5 * t368);
     ddq[5] = t370;
-    const puma560_real_t t371 = t123 * t82 + t120 * t79;
+    const puma560_real_t t371 = t123 * t82 + t120 * t79; /* link j3: motion */
     const puma560_real_t t372 = dq[0] * t371;
-    const puma560_real_t t373 = t36 * t372 + t179;
-    const puma560_real_t t374 = t123 * t79 - t120 * t82;
+    const puma560_real_t t373 = t36 * t372 + t179; /* link j4: motion */
+    const puma560_real_t t374 = t123 * t79 - t120 * t82; /* link j3: motion */
     const puma560_real_t t375 = dq[0] * t374;
-    const puma560_real_t t376 = dq[3] + t375;
-    const puma560_real_t t377 = t16 * t373 - t14 * t376;
-    const puma560_real_t t378 = t34 * t372 - t189;
-    const puma560_real_t t379 = t378 - dq[4];
-    const puma560_real_t t380 = t1 * t377 + t2 * t379;
+    const puma560_real_t t376 = dq[3] + t375; /* link j4: motion */
+    const puma560_real_t t377 = t16 * t373 - t14 * t376; /* link j5: motion */
+    const puma560_real_t t378 = t34 * t372 - t189; /* link j4: motion */
+    const puma560_real_t t379 = t378 - dq[4]; /* link j5: motion */
+    const puma560_real_t t380 = t1 * t377 + t2 * t379; /* link j6: motion */
     const puma560_real_t t381 = t380 * parameters[XZ6];
-    const puma560_real_t t382 = t14 * t373 + t16 * t376;
-    const puma560_real_t t383 = dq[5] + t382;
+    const puma560_real_t t382 = t14 * t373 + t16 * t376; /* link j5: motion */
+    const puma560_real_t t383 = dq[5] + t382; /* link j6: motion */
     const puma560_real_t t384 = t383 * parameters[XY6];
     const puma560_real_t t385 = t381 - t384;
     const puma560_real_t t386 = t1 * t379 - t2 * t377;
@@ -671,6 +719,7 @@ int puma560_forward_dynamics_derivatives_standard(
     const puma560_real_t t391 = t383 * t390 - t386 * parameters[XZ6];
     const puma560_real_t t392 = parameters[YY6] + t389;
     const puma560_real_t t393 = t380 * parameters[YZ6] - t383 * t392;
+    /* link j6: inertia, momentum beyond */
     const puma560_real_t t394 = t2 * (t385 + t388) - t1 * (t391 + t393);
     const puma560_real_t t395 = t2 * t394;
     const puma560_real_t t396 = t382 * parameters[XZ5];
@@ -689,81 +738,98 @@ int puma560_forward_dynamics_derivatives_standard(
     const puma560_real_t t409 = t386 * t392 - t380 * parameters[XY6];
     const puma560_real_t t410 = parameters[XX5] - t405;
     const puma560_real_t t411 = t379 * t410 - t377 * parameters[XZ5] + (t2 * t408 + t1 * t409);
+    /* link j5: inertia, momentum beyond */
     const puma560_real_t t412 = t16 * (t398 + t401) + t14 * (t411 - t407);
     const puma560_real_t t413 = t16 * t412;
     const puma560_real_t t414 = t378 * parameters[XZ4];
     const puma560_real_t t415 = t376 * parameters[XY4];
     const puma560_real_t t416 = t415 - t414 + (t401 - t413);
-    const puma560_real_t t417 = t396 + t400 + (t395 - t385);
+    const puma560_real_t t417 = t396 + t400 + (t395 - t385); /* link j6: inertia, momentum beyond */
     const puma560_real_t t418 = t373 * parameters[YZ4];
-    const puma560_real_t t419 = t415 + t418 - t417;
-    const puma560_real_t t420 = t1 * t394;
+    const puma560_real_t t419 = t415 + t418 - t417; /* link j5: inertia, momentum beyond */
+    const puma560_real_t t420 = t1 * t394; /* link j6: inertia, momentum beyond */
     const puma560_real_t t421 = t405 - parameters[ZZ5];
     const puma560_real_t t422 = t382 * t421 - t379 * parameters[YZ5] + (t393 + t420);
     const puma560_real_t t423 = t1 * t408 - t2 * t409 - (t379 * parameters[XZ5] + t377 * t421);
     const puma560_real_t t424 = PUMA560_C(-0.5) * (parameters[ZZ4] + (parameters[XX4] + parameters[YY4]));
     const puma560_real_t t425 = parameters[YY4] + t424;
+    /* link j5: inertia, momentum beyond */
     const puma560_real_t t426 = t378 * parameters[YZ4] - t376 * t425 + (t16 * t422 + t14 * t423);
+    /* link j6: inertia, momentum beyond */
     const puma560_real_t t427 = t377 * parameters[XY5] + t382 * t410 + (t391 + t420);
     const puma560_real_t t428 = t377 * t406 + t382 * parameters[XY5] + (t1 * t403 + t2 * t404);
     const puma560_real_t t429 = parameters[XX4] + t424;
+    /* link j5: inertia, momentum beyond */
     const puma560_real_t t430 = t376 * t429 + t373 * parameters[XZ4] + (t16 * t427 - t14 * t428);
+    /* link j4: inertia, momentum beyond */
     const puma560_real_t t431 = t36 * (t416 + t419) + t34 * (t426 + t430);
     const puma560_real_t t432 = t36 * t431;
     const puma560_real_t t433 = t383 * parameters[MY6] - t380 * parameters[MZ6];
     const puma560_real_t t434 = t383 * parameters[MX6] - t386 * parameters[MZ6];
+    /* link j6: inertia, momentum beyond */
     const puma560_real_t t435 = t2 * t433 + t1 * t434 - (t382 * parameters[MZ5] + t379 * parameters[MY5]);
     const puma560_real_t t436 = t386 * parameters[MY6] - t380 * parameters[MX6];
     const puma560_real_t t437 = t377 * parameters[MZ5] - t379 * parameters[MX5] + t436;
+    /* link j5: inertia, momentum beyond */
     const puma560_real_t t438 = t376 * parameters[MY4] - t378 * parameters[MZ4] + (t16 * t435 + t14 * t437);
+    /* link j6: inertia, momentum beyond */
     const puma560_real_t t439 = t1 * t433 - t2 * t434 - (t377 * parameters[MY5] + t382 * parameters[MX5]);
+    /* link j5: inertia, momentum beyond */
     const puma560_real_t t440 = t439 - (t376 * parameters[MX4] + t373 * parameters[MZ4]);
-    const puma560_real_t t441 = t36 * t438 - t34 * t440;
+    const puma560_real_t t441 = t36 * t438 - t34 * t440; /* link j4: inertia, momentum beyond */
     const puma560_real_t t442 = PUMA560_C(-0.0203) * t441;
-    const puma560_real_t t443 = PUMA560_C(0.4318) * t175;
-    const puma560_real_t t444 = t89 * t443;
+    const puma560_real_t t443 = PUMA560_C(0.4318) * t175; /* link j4: velocity of its origin */
+    const puma560_real_t t444 = t89 * t443; /* link j4: inertia, momentum beyond */
+    /* link j5: inertia, momentum beyond */
     const puma560_real_t t445 = t16 * t437 - t14 * t435 - (t373 * parameters[MY4] + t378 * parameters[MX4]);
-    const puma560_real_t t446 = PUMA560_C(-0.4318) * t445;
+    const puma560_real_t t446 = PUMA560_C(-0.4318) * t445; /* link j4: inertia, momentum beyond */
     const puma560_real_t t447 = PUMA560_C(-0.4318) * t372 + PUMA560_C(-0.0203) * t375;
     const puma560_real_t t448 = t45 * t447;
-    const puma560_real_t t449 = PUMA560_C(-0.0203) * t175;
-    const puma560_real_t t450 = t91 * t449;
+    const puma560_real_t t449 = PUMA560_C(-0.0203) * t175; /* link j4: velocity of its origin */
+    const puma560_real_t t450 = t91 * t449; /* link j4: inertia, momentum beyond */
     const puma560_real_t t451 = t446 - t442 + (t450 - t444 + t448);
     const puma560_real_t t452 = t375 * parameters[XZ3];
     const puma560_real_t t453 = t175 * parameters[XY3];
     const puma560_real_t t454 = t453 - t452 + (t451 + (t432 - t419 + (t442 + t444)));
-    const puma560_real_t t455 = t414 + t418 + (t413 - t398);
+    const puma560_real_t t455 = t414 + t418 + (t413 - t398); /* link j5: inertia, momentum beyond */
     const puma560_real_t t456 = t372 * parameters[YZ3];
+    /* link j4: inertia, momentum beyond */
     const puma560_real_t t457 = t453 + t456 - (t451 + (t455 - (t446 + t450)));
-    const puma560_real_t t458 = t14 * t412;
+    const puma560_real_t t458 = t14 * t412; /* link j5: inertia, momentum beyond */
     const puma560_real_t t459 = parameters[ZZ4] + t424;
     const puma560_real_t t460 = t378 * t459 - t376 * parameters[YZ4] + (t407 + t458);
     const puma560_real_t t461 = t376 * parameters[XZ4] + t373 * t459 + (t14 * t427 + t16 * t428);
+    /* link j4: inertia, momentum beyond */
     const puma560_real_t t462 = t36 * t460 - t34 * t461 + (PUMA560_C(0.4318) * t441 + t91 * t443);
     const puma560_real_t t463 = PUMA560_C(-0.5) * (parameters[ZZ3] + (parameters[XX3] + parameters[YY3]));
     const puma560_real_t t464 = parameters[YY3] + t463;
     const puma560_real_t t465 = t375 * parameters[YZ3] - t175 * t464 + t462;
+    /* link j5: inertia, momentum beyond */
     const puma560_real_t t466 = t373 * parameters[XY4] + t378 * t429 - (t458 - t411);
     const puma560_real_t t467 = t373 * t425 + t378 * parameters[XY4] + (t16 * t423 - t14 * t422);
+    /* link j4: inertia, momentum beyond */
     const puma560_real_t t468 = t36 * t466 - t34 * t467 - (PUMA560_C(-0.0203) * t445 - t89 * t449);
     const puma560_real_t t469 = parameters[XX3] + t463;
     const puma560_real_t t470 = t175 * t469 + t372 * parameters[XZ3] - t468;
+    /* link j3: inertia, momentum beyond */
     const puma560_real_t t471 = t82 * (t454 + t457) + t79 * (t465 + t470);
     const puma560_real_t t472 = t82 * t471;
+    /* link j4: inertia, momentum beyond */
     const puma560_real_t t473 = t175 * parameters[MY3] - t375 * parameters[MZ3] + (t441 + t69 * t443);
     const puma560_real_t t474 = t175 * parameters[MX3] + t372 * parameters[MZ3] - (t69 * t449 - t445);
-    const puma560_real_t t475 = t82 * t473 + t79 * t474;
+    const puma560_real_t t475 = t82 * t473 + t79 * t474; /* link j3: inertia, momentum beyond */
     const puma560_real_t t476 = PUMA560_C(-0.4318) * t475;
-    const puma560_real_t t477 = PUMA560_C(0.1254) * t171;
-    const puma560_real_t t478 = t161 * t477;
-    const puma560_real_t t479 = t34 * t438 + t36 * t440;
+    const puma560_real_t t477 = PUMA560_C(0.1254) * t171; /* link j3: velocity of its origin */
+    const puma560_real_t t478 = t161 * t477; /* link j3: inertia, momentum beyond */
+    const puma560_real_t t479 = t34 * t438 + t36 * t440; /* link j4: inertia, momentum beyond */
     const puma560_real_t t480 = t372 * parameters[MY3] + t375 * parameters[MX3] - (t479 + t69 * t447);
-    const puma560_real_t t481 = PUMA560_C(0.1254) * t480;
+    const puma560_real_t t481 = PUMA560_C(0.1254) * t480; /* link j3: inertia, momentum beyond */
+    /* link j3: velocity of its origin */
     const puma560_real_t t482 = PUMA560_C(-0.4318) * dq[1] + PUMA560_C(-0.1254) * t170;
-    const puma560_real_t t483 = t121 * t482;
-    const puma560_real_t t484 = t115 - t116;
-    const puma560_real_t t485 = PUMA560_C(0.4318) * t171;
-    const puma560_real_t t486 = t484 * t485;
+    const puma560_real_t t483 = t121 * t482; /* link j3: inertia, momentum beyond */
+    const puma560_real_t t484 = t115 - t116; /* link j3: inertia of it and all beyond */
+    const puma560_real_t t485 = PUMA560_C(0.4318) * t171; /* link j3: velocity of its origin */
+    const puma560_real_t t486 = t484 * t485; /* link j3: inertia, momentum beyond */
     const puma560_real_t t487 = t481 - t476 + (t486 - (t478 + t483));
     const puma560_real_t t488 = t171 * parameters[XZ2];
     const puma560_real_t t489 = dq[1] * parameters[XY2];
@@ -778,45 +844,51 @@ int puma560_forward_dynamics_derivatives_standard(
     const puma560_real_t t498 = parameters[XX2] + t494;
     const puma560_real_t t499 = t493 - t470 + (PUMA560_C(0.4318) * t497 + t161 * t482)
         - (t170 * parameters[XZ2] + dq[1] * t498);
+    /* link j2: inertia, momentum beyond */
     const puma560_real_t t500 = t120 * (t120 * (t492 - t490) + t123 * (t496 + t499));
     const puma560_real_t t501 = PUMA560_C(-272.2221739130435) * parameters[FV1]
         + PUMA560_C(0.13888355537457484) * (t490 + t500);
     const puma560_real_t t502 = puma560_bounded(PUMA560_C(-14.400553) * t362);
     const puma560_real_t t503 = t167 * t362;
     const puma560_real_t t504 = puma560_bounded(PUMA560_C(24.79745) * t503);
-    const puma560_real_t t505 = t34 * t431;
+    const puma560_real_t t505 = t34 * t431; /* link j4: inertia, momentum beyond */
     const puma560_real_t t506 = t372 * parameters[XY3] + t375 * t469 + (t430 - t505
         - (PUMA560_C(-0.0203) * t479 + t89 * t447));
     const puma560_real_t t507 = t34 * t460 + t36 * t461 + (PUMA560_C(0.4318) * t479 + t91 * t447);
     const puma560_real_t t508 = t372 * t464 + t375 * parameters[XY3] + t507;
+    /* link j3: inertia, momentum beyond */
     const puma560_real_t t509 = t79 * t508 - t82 * t506 + (PUMA560_C(0.4318) * t480 + t161 * t485);
+    /* link j2: derivatives */
     const puma560_real_t t510 = PUMA560_C(2.0) * (t171 * t498 - t170 * parameters[XY2] + t509);
+    /* link j3: inertia, momentum beyond */
     const puma560_real_t t511 = t171 * parameters[XY2] - t170 * t495 - (t79 * t506 + t82 * t508
         - t121 * t485);
-    const puma560_real_t t512 = PUMA560_C(2.0) * t511;
+    const puma560_real_t t512 = PUMA560_C(2.0) * t511; /* link j2: derivatives */
     const puma560_real_t t513 = PUMA560_C(0.04032672714331514) * (t123 * t510 + t120 * t512);
     const puma560_real_t t514 = t362 * (t97 * t167 - t160);
     const puma560_real_t t515 = puma560_bounded(PUMA560_C(12.352449) * t514);
-    const puma560_real_t t516 = PUMA560_C(2.0) * t506;
+    const puma560_real_t t516 = PUMA560_C(2.0) * t506; /* link j3: derivatives */
     const puma560_real_t t517 = PUMA560_C(2.0) * t508;
-    const puma560_real_t t518 = PUMA560_C(0.8636) * t171;
-    const puma560_real_t t519 = t79 * t517 - t82 * t516 + t93 * t518;
+    const puma560_real_t t518 = PUMA560_C(0.8636) * t171; /* link j6: derivatives */
+    const puma560_real_t t519 = t79 * t517 - t82 * t516 + t93 * t518; /* link j3: derivatives */
     const puma560_real_t t520 = t79 * t516 + t82 * t517 - t121 * t518;
     const puma560_real_t t521 = PUMA560_C(0.08095560645504385) * (t123 * t519 - t120 * t520);
     const puma560_real_t t522 = t98 + t59 * t97;
     const puma560_real_t t523 = t362 * (t167 * t522 - (t151 + t59 * t160));
     const puma560_real_t t524 = puma560_bounded(PUMA560_C(5.322548) * t523);
-    const puma560_real_t t525 = PUMA560_C(2.0) * t466;
+    const puma560_real_t t525 = PUMA560_C(2.0) * t466; /* link j4: derivatives */
     const puma560_real_t t526 = PUMA560_C(2.0) * t467;
-    const puma560_real_t t527 = PUMA560_C(-0.0406) * t175;
-    const puma560_real_t t528 = t36 * t525 - t34 * t526 + t67 * t527;
+    const puma560_real_t t527 = PUMA560_C(-0.0406) * t175; /* link j6: derivatives */
+    const puma560_real_t t528 = t36 * t525 - t34 * t526 + t67 * t527; /* link j4: derivatives */
     const puma560_real_t t529 = PUMA560_C(2.0) * t455;
-    const puma560_real_t t530 = PUMA560_C(2.0) * t447;
+    const puma560_real_t t530 = PUMA560_C(2.0) * t447; /* link j6: derivatives */
     const puma560_real_t t531 = PUMA560_C(-0.8636) * t175;
-    const puma560_real_t t532 = t529 + (t45 * t530 + t67 * t531);
-    const puma560_real_t t533 = PUMA560_C(2.0) * t482;
+    const puma560_real_t t532 = t529 + (t45 * t530 + t67 * t531); /* link j4: derivatives */
+    const puma560_real_t t533 = PUMA560_C(2.0) * t482; /* link j6: derivatives */
+    /* link j4: derivatives */
     const puma560_real_t t534 = t79 * t532 - t82 * t528 + (t80 * t518 - t67 * t533);
-    const puma560_real_t t535 = PUMA560_C(-0.2508) * t171;
+    const puma560_real_t t535 = PUMA560_C(-0.2508) * t171; /* link j6: derivatives */
+    /* link j4: derivatives */
     const puma560_real_t t536 = t79 * t528 + t82 * t532 + (t148 * t518 + t67 * t535);
     const puma560_real_t t537 = PUMA560_C(0.18787994020908783) * (t123 * t534 - t120 * t536);
     const puma560_real_t t538 = t513 * t504 - t501 * t502 - t521 * t515 + t537 * t524;
@@ -825,7 +897,7 @@ int puma560_forward_dynamics_derivatives_standard(
     const puma560_real_t t541 = t143 - t22 * t151 - t160 * t539 + t167 * t540;
     const puma560_real_t t542 = t362 * t541;
     const puma560_real_t t543 = puma560_bounded(PUMA560_C(5.034610000000001) * t542);
-    const puma560_real_t t544 = PUMA560_C(2.0) * t427;
+    const puma560_real_t t544 = PUMA560_C(2.0) * t427; /* link j5: derivatives */
     const puma560_real_t t545 = PUMA560_C(2.0) * t428;
     const puma560_real_t t546 = t16 * t544 - t14 * t545;
     const puma560_real_t t547 = PUMA560_C(2.0) * t417;
@@ -841,7 +913,7 @@ int puma560_forward_dynamics_derivatives_standard(
     const puma560_real_t t557 = t134 + t5 * t143 - t151 * t554 - t160 * t555;
     const puma560_real_t t558 = t362 * (t557 + t167 * t556);
     const puma560_real_t t559 = PUMA560_C(5.368020000000001) * t558;
-    const puma560_real_t t560 = PUMA560_C(2.0) * t408;
+    const puma560_real_t t560 = PUMA560_C(2.0) * t408; /* link j6: derivatives */
     const puma560_real_t t561 = PUMA560_C(2.0) * t409;
     const puma560_real_t t562 = t2 * t560 + t1 * t561;
     const puma560_real_t t563 = PUMA560_C(2.0) * t399;
@@ -915,44 +987,44 @@ int puma560_forward_dynamics_derivatives_standard(
     ddq_by_input[24] = t603;
     ddq_by_input[30] = t613;
     const puma560_real_t t621 = t364 + t365;
-    const puma560_real_t t622 = t372 * t375;
+    const puma560_real_t t622 = t372 * t375; /* link j3: motion */
     const puma560_real_t t623 = t622 + t621;
     const puma560_real_t t624 = t371 * t363;
     const puma560_real_t t625 = t375 * t175;
     const puma560_real_t t626 = t625 - t624;
     const puma560_real_t t627 = t625 + t626;
     const puma560_real_t t628 = t36 * t623 + t34 * t627;
-    const puma560_real_t t629 = t373 * t376;
+    const puma560_real_t t629 = t373 * t376; /* link j4: motion */
     const puma560_real_t t630 = t628 - t629;
     const puma560_real_t t631 = t368 + t630;
-    const puma560_real_t t632 = t377 * t382;
+    const puma560_real_t t632 = t377 * t382; /* link j5: motion */
     const puma560_real_t t633 = t632 + t631;
     const puma560_real_t t634 = t374 * t363;
-    const puma560_real_t t635 = t372 * t175;
+    const puma560_real_t t635 = t372 * t175; /* link j3: motion */
     const puma560_real_t t636 = t635 + t634;
     const puma560_real_t t637 = t366 + t636;
-    const puma560_real_t t638 = t373 * t378;
+    const puma560_real_t t638 = t373 * t378; /* link j4: motion */
     const puma560_real_t t639 = t638 + t637;
     const puma560_real_t t640 = t34 * t623 - t36 * t627;
     const puma560_real_t t641 = t378 * t376;
     const puma560_real_t t642 = t641 - t640;
     const puma560_real_t t643 = t641 + t642;
     const puma560_real_t t644 = t14 * t639 + t16 * t643;
-    const puma560_real_t t645 = t382 * t379;
+    const puma560_real_t t645 = t382 * t379; /* link j5: motion */
     const puma560_real_t t646 = t645 - t644;
     const puma560_real_t t647 = t645 + t646;
     const puma560_real_t t648 = t1 * t633 + t2 * t647;
-    const puma560_real_t t649 = t380 * t383;
+    const puma560_real_t t649 = t380 * t383; /* link j6: motion */
     const puma560_real_t t650 = t649 - t648;
     const puma560_real_t t651 = t2 * t633 - t1 * t647;
     const puma560_real_t t652 = t386 * t383;
     const puma560_real_t t653 = t652 + t651;
     const puma560_real_t t654 = t652 + t653;
     const puma560_real_t t655 = t14 * t643 - t16 * t639;
-    const puma560_real_t t656 = t377 * t379;
+    const puma560_real_t t656 = t377 * t379; /* link j5: motion */
     const puma560_real_t t657 = t656 + t655;
     const puma560_real_t t658 = t370 - t657;
-    const puma560_real_t t659 = t386 * t380;
+    const puma560_real_t t659 = t386 * t380; /* link j6: motion */
     const puma560_real_t t660 = t659 + t658;
     const puma560_real_t t661 = parameters[XY6] * t654 - (t649 * t207 + parameters[XX6] * t650)
         - parameters[XZ6] * t660;
@@ -964,8 +1036,8 @@ int puma560_forward_dynamics_derivatives_standard(
     const puma560_real_t t667 = t120 * t363;
     const puma560_real_t t668 = t227 + (t226 + PUMA560_C(0.1254) * t667);
     const puma560_real_t t669 = t82 * t668 - t79 * t666;
-    const puma560_real_t t670 = t375 * t375;
-    const puma560_real_t t671 = t670 + t222;
+    const puma560_real_t t670 = t375 * t375; /* link j3: motion */
+    const puma560_real_t t671 = t670 + t222; /* link j4: motion */
     const puma560_real_t t672 = t669 + (PUMA560_C(0.0203) * t671 + PUMA560_C(0.4318) * t623);
     const puma560_real_t t673 = t635 + t636;
     const puma560_real_t t674 = t667 - t237;
@@ -975,8 +1047,8 @@ int puma560_forward_dynamics_derivatives_standard(
     const puma560_real_t t678 = t36 * t672 - t34 * t677;
     const puma560_real_t t679 = t79 * t668 + t82 * t666;
     const puma560_real_t t680 = t621 - t622;
-    const puma560_real_t t681 = t372 * t372;
-    const puma560_real_t t682 = t681 + t222;
+    const puma560_real_t t681 = t372 * t372; /* link j3: motion */
+    const puma560_real_t t682 = t681 + t222; /* link j4: motion */
     const puma560_real_t t683 = t679 + (PUMA560_C(-0.4318) * t682 + PUMA560_C(0.0203) * t680);
     const puma560_real_t t684 = t14 * t678 + t16 * t683;
     const puma560_real_t t685 = t16 * t678 - t14 * t683;
@@ -988,7 +1060,7 @@ int puma560_forward_dynamics_derivatives_standard(
     const puma560_real_t t691 = t658 - t659;
     const puma560_real_t t692 = parameters[YY6] * t653 - t652 * t250 - parameters[XY6] * t690
         - parameters[YZ6] * t691;
-    const puma560_real_t t693 = t386 * t386;
+    const puma560_real_t t693 = t386 * t386; /* link j6: motion */
     const puma560_real_t t694 = t1 * t686 - t2 * t685;
     const puma560_real_t t695 = parameters[MZ6] * t694;
     const puma560_real_t t696 = (t693 - t663) * parameters[XZ6] + t692 + (parameters[MX6] * t684 - t695);
@@ -996,7 +1068,7 @@ int puma560_forward_dynamics_derivatives_standard(
     const puma560_real_t t698 = t632 - t631;
     const puma560_real_t t699 = parameters[XX5] * t646 - t645 * t257 + parameters[XY5] * t697
         + parameters[XZ5] * t698;
-    const puma560_real_t t700 = t382 * t382;
+    const puma560_real_t t700 = t382 * t382; /* link j5: motion */
     const puma560_real_t t701 = t379 * t379;
     const puma560_real_t t702 = (t701 - t700) * parameters[YZ5] + t699 + (parameters[MY5] * t686
         + parameters[MZ5] * t684);
@@ -1015,7 +1087,7 @@ int puma560_forward_dynamics_derivatives_standard(
     const puma560_real_t t711 = t638 - t637;
     const puma560_real_t t712 = t641 * t272 - parameters[XX4] * t642 - parameters[XY4] * t710
         + parameters[XZ4] * t711;
-    const puma560_real_t t713 = t378 * t378;
+    const puma560_real_t t713 = t378 * t378; /* link j4: motion */
     const puma560_real_t t714 = t376 * t376;
     const puma560_real_t t715 = (t713 - t714) * parameters[YZ4] - t712 + (parameters[MY4] * t683
         - parameters[MZ4] * t686);
@@ -1041,14 +1113,14 @@ int puma560_forward_dynamics_derivatives_standard(
     const puma560_real_t t730 = parameters[M5] * t685 + t729 + (t2 * t725 + t1 * t728);
     const puma560_real_t t731 = (t707 + t701) * parameters[MY5] + parameters[MX5] * t698
         + parameters[MZ5] * t644;
-    const puma560_real_t t732 = t693 + t662;
+    const puma560_real_t t732 = t693 + t662; /* link j6: columns */
     const puma560_real_t t733 = parameters[M6] * t684 + (parameters[MX6] * t654 + parameters[MY6] * t690
         - t732 * parameters[MZ6]);
     const puma560_real_t t734 = parameters[M5] * t684 - t731 + t733;
     const puma560_real_t t735 = (t713 + t714) * parameters[MX4] + parameters[MY4] * t639
         + parameters[MZ4] * t628;
     const puma560_real_t t736 = parameters[M4] * t678 + t735 + (t16 * t730 + t14 * t734);
-    const puma560_real_t t737 = t707 + t700;
+    const puma560_real_t t737 = t707 + t700; /* link j6: motion */
     const puma560_real_t t738 = parameters[MX5] * t697 - parameters[MY5] * t647 - t737 * parameters[MZ5]
         - parameters[M5] * t686;
     const puma560_real_t t739 = (t720 + t714) * parameters[MY4] + parameters[MX4] * t711
@@ -1073,13 +1145,13 @@ int puma560_forward_dynamics_derivatives_standard(
     const puma560_real_t t751 = parameters[M3] * t669 + (t671 * parameters[MX3] + parameters[MY3] * t623
         - parameters[MZ3] * t634);
     const puma560_real_t t752 = t751 + (t36 * t736 - t34 * t740);
-    const puma560_real_t t753 = t720 + t713;
+    const puma560_real_t t753 = t720 + t713; /* link j5: motion */
     const puma560_real_t t754 = parameters[M4] * t683 - (t753 * parameters[MZ4] + (parameters[MX4] * t710
         - parameters[MY4] * t643));
     const puma560_real_t t755 = parameters[M3] * t679 - (t682 * parameters[MY3] - parameters[MX3] * t680
         - parameters[MZ3] * t624);
     const puma560_real_t t756 = t755 + (t754 - (t14 * t730 - t16 * t734));
-    const puma560_real_t t757 = t681 + t670;
+    const puma560_real_t t757 = t681 + t670; /* link j4: motion */
     const puma560_real_t t758 = parameters[M3] * t676 + (parameters[MY3] * t627 - parameters[MX3] * t673
         - t757 * parameters[MZ3]);
     const puma560_real_t t759 = PUMA560_C(0.1254) * (t82 * t752 + t79 * t756) + PUMA560_C(0.4318) * (t758
@@ -1088,10 +1160,10 @@ int puma560_forward_dynamics_derivatives_standard(
     const puma560_real_t t761 = t332 + parameters[YY2] * t674 + parameters[XY2] * (t324 + t760)
         + parameters[YZ2] * (t229 - t364);
     const puma560_real_t t762 = t335 + (t334 + t761) + (t79 * t744 + t82 * t750 + t759);
-    const puma560_real_t t763 = PUMA560_C(-2.0) * t171;
+    const puma560_real_t t763 = PUMA560_C(-2.0) * t171; /* link j2: derivatives */
     const puma560_real_t t764 = PUMA560_C(2.0) * t170;
     const puma560_real_t t765 = t235 * t162 + (t122 * t665 - t118 * t667) - (t490 * t763 + t496 * t764);
-    const puma560_real_t t766 = t484 - parameters[MZ2];
+    const puma560_real_t t766 = t484 - parameters[MZ2]; /* link j3: inertia of it and all beyond */
     const puma560_real_t t767 = t79 * t750 - t82 * t744 + PUMA560_C(0.1254) * (t79 * t752 - t82 * t756);
     const puma560_real_t t768 = t325 - parameters[XX2] * t760 + parameters[XY2] * t675
         + parameters[XZ2] * t664;
@@ -1123,34 +1195,43 @@ int puma560_forward_dynamics_derivatives_standard(
     const puma560_real_t t789 = t614 * t775 - t613 * t772 - t615 * t777 + t616 * t779;
     ddq_by_q[31] = t789 + t618 * t782 + t620 * t784;
     const puma560_real_t t790 = parameters[ZZ3] + t463;
+    /* link j4: inertia, momentum beyond */
     const puma560_real_t t791 = t375 * t790 - t175 * parameters[YZ3] + (t505 - t426 - t45 * t443);
     const puma560_real_t t792 = t175 * parameters[XZ3] + t372 * t790 + (t34 * t466 + t36 * t467 - t45 * t449);
+    /* link j3: inertia, momentum beyond */
     const puma560_real_t t793 = t82 * t791 - t79 * t792 + (PUMA560_C(0.1254) * t475 - t484 * t477);
     const puma560_real_t t794 = parameters[ZZ2] + t494;
+    /* link j2: derivatives */
     const puma560_real_t t795 = PUMA560_C(2.0) * (t793 - (dq[1] * parameters[YZ2] + t171 * t794))
         + (t118 * t763 + t122 * t764);
+    /* link j3: inertia, momentum beyond */
     const puma560_real_t t796 = t79 * t791 + t82 * t792 + (PUMA560_C(-0.1254) * t497 - t484 * t482);
+    /* link j2: derivatives */
     const puma560_real_t t797 = PUMA560_C(2.0) * (dq[1] * parameters[XZ2] + t170 * t794 + t796) + (t122 * t763
         + t119 * t764);
     const puma560_real_t t798 = PUMA560_C(0.06944177768728742) * (t123 * t795 + t120 * t797);
+    /* link j4: inertia, momentum beyond */
     const puma560_real_t t799 = t452 + t456 + (t451 + (t416 - t432 - t448));
+    /* link j2: derivatives */
     const puma560_real_t t800 = PUMA560_C(2.0) * (t491 - t488 + (t487 + (t799 - (t481 + t486))));
     const puma560_real_t t801 = PUMA560_C(0.04032672714331514) * (t800 + PUMA560_C(2.0) * (t170 * t163
         - t171 * t162));
     const puma560_real_t t802 = PUMA560_C(-468.7608695652174) * parameters[FV2] + t801;
-    const puma560_real_t t803 = PUMA560_C(2.0) * t799;
+    const puma560_real_t t803 = PUMA560_C(2.0) * t799; /* link j3: derivatives */
     const puma560_real_t t804 = t803 + (t93 * t535 - t121 * t533) + PUMA560_C(2.0) * (t170 * t157
         - t171 * t156);
     const puma560_real_t t805 = PUMA560_C(0.08095560645504385) * t804;
-    const puma560_real_t t806 = t45 * t527 - (t34 * t525 + t36 * t526);
+    const puma560_real_t t806 = t45 * t527 - (t34 * t525 + t36 * t526); /* link j4: derivatives */
     const puma560_real_t t807 = t806 + (t80 * t535 + t148 * t533) + PUMA560_C(2.0) * (t170 * t149
         - t171 * t147);
     const puma560_real_t t808 = PUMA560_C(0.18787994020908783) * t807;
     const puma560_real_t t809 = t802 * t504 - t798 * t502 - t805 * t515 + t808 * t524;
+    /* link j5: derivatives */
     const puma560_real_t t810 = t36 * t547 - t34 * t546 + (t43 * t531 + t54 * t527);
     const puma560_real_t t811 = t810 + (t85 * t535 - t140 * t533) + PUMA560_C(2.0) * (t171 * t139
         - t170 * t141);
     const puma560_real_t t812 = PUMA560_C(0.19862511694053758) * t811;
+    /* link j6: derivatives */
     const puma560_real_t t813 = t36 * t565 - t34 * t564 + (t50 * t531 - t49 * t527);
     const puma560_real_t t814 = t813 + (t83 * t535 - t130 * t533) + PUMA560_C(2.0) * (t171 * t132
         - t170 * t131);
@@ -1172,7 +1253,7 @@ int puma560_forward_dynamics_derivatives_standard(
     ddq_by_input[19] = t594;
     ddq_by_input[25] = t604;
     ddq_by_input[31] = t614;
-    const puma560_real_t t821 = PUMA560_C(2.0) * t375;
+    const puma560_real_t t821 = PUMA560_C(2.0) * t375; /* link j3: derivatives */
     const puma560_real_t t822 = PUMA560_C(2.0) * t372;
     const puma560_real_t t823 = t465 * t822 - t454 * t821 + (t757 * t153 + (t109 * t634 + t112 * t624));
     const puma560_real_t t824 = t750 + (t823 + t115 * t669);
@@ -1250,7 +1331,7 @@ int puma560_forward_dynamics_derivatives_standard(
     ddq_by_input[20] = t595;
     ddq_by_input[26] = t605;
     ddq_by_input[32] = t615;
-    const puma560_real_t t876 = PUMA560_C(2.0) * t378;
+    const puma560_real_t t876 = PUMA560_C(2.0) * t378; /* link j4: derivatives */
     const puma560_real_t t877 = PUMA560_C(2.0) * t373;
     const puma560_real_t t878 = t426 * t877 - t416 * t876 + (t64 * t640 - t62 * t628 - t753 * t33);
     const puma560_real_t t879 = t722 + (t878 - t72 * t678);
@@ -1338,7 +1419,7 @@ int puma560_forward_dynamics_derivatives_standard(
     ddq_by_input[21] = t597;
     ddq_by_input[27] = t606;
     ddq_by_input[33] = t616;
-    const puma560_real_t t939 = PUMA560_C(2.0) * t382;
+    const puma560_real_t t939 = PUMA560_C(2.0) * t382; /* link j5: derivatives */
     const puma560_real_t t940 = PUMA560_C(-2.0) * t377;
     const puma560_real_t t941 = t411 * t939 - t401 * t940 + (t737 * t15 + (t24 * t644 - t25 * t655));
     const puma560_real_t t942 = t703 + (t941 + t38 * t684);
@@ -1434,7 +1515,7 @@ int puma560_forward_dynamics_derivatives_standard(
     ddq_by_input[22] = t600;
     ddq_by_input[28] = t609;
     ddq_by_input[34] = t618;
-    const puma560_real_t t1011 = PUMA560_C(2.0) * t380;
+    const puma560_real_t t1011 = PUMA560_C(2.0) * t380; /* link j6: derivatives */
     const puma560_real_t t1012 = PUMA560_C(-2.0) * t386;
     const puma560_real_t t1013 = t385 * t1011 + t393 * t1012 + (parameters[XY6] * t648
         - parameters[XX6] * t651 - t732 * parameters[XZ6]);

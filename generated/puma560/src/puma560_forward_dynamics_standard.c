@@ -6,7 +6,7 @@
  * Arm puma560, description e8eb13fe224405b2.
  * SPDX-License-Identifier: 0BSD
  *
- * Operations: 1051 (553 mul, 498 add, 0 neg), 6 div, 10 trig, 6 other.
+ * Operations: 1051 (553 mul, 498 add, 0 neg), 6 div, 10 trig, 6 other calls (sign, select and the like).
  *
  * @param[in]   q           [6]   [rad]      joint coordinates; norm at most 10000
  * @param[in]   dq          [6]   [rad/s]    joint velocities; norm at most 100000
@@ -107,11 +107,11 @@
  */
 #include "puma560_private.h"
 
-#if PUMA560_GENERATION != 0xAC9DC6F4UL
+#if PUMA560_GENERATION != 0x0486C622UL
 #error "puma560.h and puma560_forward_dynamics_standard.c are of different generations: generate the arm again"
 #endif
 
-int puma560_forward_dynamics_standard(
+puma560_status_t puma560_forward_dynamics_standard(
     const puma560_real_t q[PUMA560_N_JOINTS],
     const puma560_real_t dq[PUMA560_N_JOINTS],
     const puma560_real_t input[PUMA560_N_JOINTS],
@@ -122,7 +122,7 @@ int puma560_forward_dynamics_standard(
         M2, XX3, XY3, XZ3, YY3, YZ3, ZZ3, MX3, MY3, MZ3, M3, XX4, XY4, XZ4, YY4, YZ4, ZZ4, MX4, MY4, MZ4, M4,
         XX5, XY5, XZ5, YY5, YZ5, ZZ5, MX5, MY5, MZ5, M5, XX6, XY6, XZ6, YY6, YZ6, ZZ6, MX6, MY6, MZ6, M6, FV1,
         FC1, IA1, FV2, FC2, IA2, FV3, FC3, IA3, FV4, FC4, IA4, FV5, FC5, IA5, FV6, FC6, IA6 };
-    int status = PUMA560_STATUS_OK;
+    puma560_status_t status = PUMA560_STATUS_OK;
 
     if (!puma560_within_joints(q, PUMA560_C(1.0e8))
         || !puma560_within_joints(dq, PUMA560_C(1.0e10))
@@ -151,10 +151,11 @@ int puma560_forward_dynamics_standard(
         puma560_zero(out, 6);
         return PUMA560_STATUS_PIVOT;
     }
+    /* link j6: column of the mass matrix */
     const puma560_real_t t3 = t1 * parameters[XZ6] + t2 * parameters[YZ6];
     const puma560_real_t t4 = PUMA560_C(1.0) / t0;
     const puma560_real_t t5 = t3 * t4;
-    const puma560_real_t t6 = parameters[YY6] - parameters[XX6];
+    const puma560_real_t t6 = parameters[YY6] - parameters[XX6]; /* link j6: inertia of it and all beyond */
     const puma560_real_t t7 = t2 * t6 + parameters[XY6] * (PUMA560_C(2.0) * t1);
     const puma560_real_t t8 = t2 * t7;
     const puma560_real_t t9 = parameters[ZZ5] + (parameters[XX6] + t8);
@@ -171,15 +172,18 @@ int puma560_forward_dynamics_standard(
     }
     const puma560_real_t t13 = parameters[XY6] - t1 * t7 - parameters[XZ5];
     const puma560_real_t t15 = parameters[YZ5] - t3;
-    const puma560_real_t t17 = t16 * t15 - t14 * t13;
+    const puma560_real_t t17 = t16 * t15 - t14 * t13; /* link j5: column of the mass matrix */
+    /* link j6: column of the mass matrix */
     const puma560_real_t t18 = t1 * parameters[YZ6] - t2 * parameters[XZ6];
     const puma560_real_t t19 = t14 * t18 - t16 * parameters[ZZ6];
     const puma560_real_t t20 = t17 - t19 * t5;
     const puma560_real_t t21 = PUMA560_C(-1.0) / t11;
     const puma560_real_t t22 = t20 * t21;
+    /* link j6: inertia of it and all beyond */
     const puma560_real_t t23 = parameters[XX5] + (parameters[YY6] - t8);
     const puma560_real_t t24 = parameters[YY5] + parameters[ZZ6];
     const puma560_real_t t25 = t18 - parameters[XY5];
+    /* link j5: inertia of it and all beyond */
     const puma560_real_t t26 = t16 * (t24 - t23) - t25 * (PUMA560_C(2.0) * t14);
     const puma560_real_t t27 = t16 * t26;
     const puma560_real_t t28 = parameters[ZZ4] + (t23 + t27);
@@ -197,21 +201,24 @@ int puma560_forward_dynamics_standard(
     }
     const puma560_real_t t33 = t25 + t14 * t26 - parameters[XZ4];
     const puma560_real_t t35 = t17 - parameters[YZ4];
+    /* link j6: column of the mass matrix */
     const puma560_real_t t37 = t2 * parameters[MY6] + t1 * parameters[MX6];
+    /* link j5: inertia of it and all beyond */
     const puma560_real_t t38 = parameters[MZ5] - t37 - parameters[MY4];
+    /* link j6: column of the mass matrix */
     const puma560_real_t t39 = t2 * parameters[MX6] - t1 * parameters[MY6];
-    const puma560_real_t t40 = parameters[MX5] + t39;
+    const puma560_real_t t40 = parameters[MX5] + t39; /* link j6: inertia of it and all beyond */
     const puma560_real_t t41 = parameters[MY5] + parameters[MZ6];
-    const puma560_real_t t42 = t16 * t40 - t14 * t41;
-    const puma560_real_t t43 = parameters[MX4] + t42;
-    const puma560_real_t t44 = t36 * t38 - t34 * t43;
+    const puma560_real_t t42 = t16 * t40 - t14 * t41; /* link j5: column of the mass matrix */
+    const puma560_real_t t43 = parameters[MX4] + t42; /* link j5: inertia of it and all beyond */
+    const puma560_real_t t44 = t36 * t38 - t34 * t43; /* link j4: column of the mass matrix */
     const puma560_real_t t45 = t34 * t33 + t36 * t35 + PUMA560_C(-0.4318) * t44;
-    const puma560_real_t t46 = t16 * t18 + t14 * parameters[ZZ6];
+    const puma560_real_t t46 = t16 * t18 + t14 * parameters[ZZ6]; /* link j6: column of the mass matrix */
     const puma560_real_t t47 = t16 * t37;
     const puma560_real_t t48 = t36 * t47 + t34 * t39;
     const puma560_real_t t49 = t14 * t37;
     const puma560_real_t t50 = t34 * t46 - t36 * t3 + (PUMA560_C(-0.0203) * t49 + PUMA560_C(0.4318) * t48);
-    const puma560_real_t t51 = t16 * t13 + t14 * t15;
+    const puma560_real_t t51 = t16 * t13 + t14 * t15; /* link j5: column of the mass matrix */
     const puma560_real_t t52 = t16 * t41 + t14 * t40;
     const puma560_real_t t53 = t36 * t52;
     const puma560_real_t t54 = t34 * t51 + t36 * t9 + (PUMA560_C(0.0203) * t42 + PUMA560_C(0.4318) * t53);
@@ -221,17 +228,19 @@ int puma560_forward_dynamics_standard(
     const puma560_real_t t58 = t56 * t57;
     const puma560_real_t t59 = t55 * t21;
     const puma560_real_t t60 = t50 * t4;
-    const puma560_real_t t61 = parameters[XX4] + (t24 - t27);
+    const puma560_real_t t61 = parameters[XX4] + (t24 - t27); /* link j5: inertia of it and all beyond */
     const puma560_real_t t62 = parameters[YY4] + t9;
     const puma560_real_t t63 = parameters[XY4] + t51;
+    /* link j4: inertia of it and all beyond */
     const puma560_real_t t64 = t36 * (t61 - t62) + t63 * (PUMA560_C(-2.0) * t34);
     const puma560_real_t t65 = t36 * t64;
-    const puma560_real_t t66 = t34 * t38 + t36 * t43;
+    const puma560_real_t t66 = t34 * t38 + t36 * t43; /* link j4: column of the mass matrix */
+    /* link j5: inertia of it and all beyond */
     const puma560_real_t t67 = parameters[M4] + (parameters[M5] + parameters[M6]);
-    const puma560_real_t t68 = PUMA560_C(0.0203) * t67;
+    const puma560_real_t t68 = PUMA560_C(0.0203) * t67; /* link j4: inertia of it and all beyond */
     const puma560_real_t t69 = PUMA560_C(0.0203) * (t68 + PUMA560_C(2.0) * t66);
-    const puma560_real_t t70 = parameters[MZ4] + t52;
-    const puma560_real_t t71 = PUMA560_C(0.4318) * t67;
+    const puma560_real_t t70 = parameters[MZ4] + t52; /* link j5: inertia of it and all beyond */
+    const puma560_real_t t71 = PUMA560_C(0.4318) * t67; /* link j4: inertia of it and all beyond */
     const puma560_real_t t72 = PUMA560_C(0.4318) * (t71 + PUMA560_C(2.0) * t70);
     const puma560_real_t t73 = parameters[ZZ3] + (t61 - t65 + (t69 + t72));
     const puma560_real_t t74 = t73 + PUMA560_C(2884.36665969) * parameters[IA3];
@@ -245,16 +254,16 @@ int puma560_forward_dynamics_standard(
         puma560_zero(out, 6);
         return PUMA560_STATUS_PIVOT;
     }
-    const puma560_real_t t78 = t77 * t44;
-    const puma560_real_t t80 = t77 * t48 + t79 * t49;
+    const puma560_real_t t78 = t77 * t44; /* link j4: column of the mass matrix */
+    const puma560_real_t t80 = t77 * t48 + t79 * t49; /* link j6: column of the mass matrix */
     const puma560_real_t t81 = PUMA560_C(0.4318) * t80 - t50;
-    const puma560_real_t t82 = t79 * t42 - t77 * t53;
+    const puma560_real_t t82 = t79 * t42 - t77 * t53; /* link j5: column of the mass matrix */
     const puma560_real_t t83 = PUMA560_C(-0.4318) * t82 - t54 + t81 * t5;
     const puma560_real_t t84 = PUMA560_C(-0.4318) * t78 - t45 + t81 * t30 + t83 * t22;
-    const puma560_real_t t85 = t66 + t68;
+    const puma560_real_t t85 = t66 + t68; /* link j4: inertia of it and all beyond */
     const puma560_real_t t86 = parameters[MX3] + t85;
     const puma560_real_t t87 = parameters[MY3] + (t70 + t71);
-    const puma560_real_t t88 = t79 * t86 - t77 * t87;
+    const puma560_real_t t88 = t79 * t86 - t77 * t87; /* link j3: column of the mass matrix */
     const puma560_real_t t89 = PUMA560_C(-0.4318) * t88 - t73 - t81 * t60 + t83 * t59;
     const puma560_real_t t90 = t89 + t84 * t58;
     const puma560_real_t t91 = PUMA560_C(-1.0) / t75;
@@ -262,8 +271,8 @@ int puma560_forward_dynamics_standard(
     const puma560_real_t t93 = t84 * t57;
     const puma560_real_t t94 = t83 * t21;
     const puma560_real_t t95 = t81 * t4;
-    const puma560_real_t t96 = parameters[M3] + t67;
-    const puma560_real_t t97 = PUMA560_C(0.4318) * t96;
+    const puma560_real_t t96 = parameters[M3] + t67; /* link j4: inertia of it and all beyond */
+    const puma560_real_t t97 = PUMA560_C(0.4318) * t96; /* link j3: inertia of it and all beyond */
     const puma560_real_t t98 = PUMA560_C(0.4318) * (t97 + PUMA560_C(2.0) * t88);
     const puma560_real_t t99 = parameters[ZZ2] + (t73 + t98) + PUMA560_C(11624.074225) * parameters[IA2];
     const puma560_real_t t100 = t99 - t81 * t95 + t83 * t94 + t84 * t93;
@@ -277,23 +286,29 @@ int puma560_forward_dynamics_standard(
         puma560_zero(out, 6);
         return PUMA560_STATUS_PIVOT;
     }
+    /* link j4: inertia of it and all beyond */
     const puma560_real_t t103 = parameters[XX3] + (t62 + t65 + t72);
     const puma560_real_t t104 = parameters[YY3] + (t28 + t69);
-    const puma560_real_t t105 = t34 * t35 - t36 * t33;
+    const puma560_real_t t105 = t34 * t35 - t36 * t33; /* link j4: column of the mass matrix */
+    /* link j4: inertia of it and all beyond */
     const puma560_real_t t106 = parameters[XY3] + (t105 + (PUMA560_C(-0.0203) * t70
         + PUMA560_C(-0.4318) * t85));
+    /* link j3: inertia of it and all beyond */
     const puma560_real_t t107 = t79 * (t103 - t104) - t106 * (PUMA560_C(2.0) * t77);
     const puma560_real_t t108 = t79 * t107;
-    const puma560_real_t t109 = parameters[MZ3] + t44;
+    const puma560_real_t t109 = parameters[MZ3] + t44; /* link j4: inertia of it and all beyond */
+    /* link j3: inertia of it and all beyond */
     const puma560_real_t t110 = PUMA560_C(0.1254) * (PUMA560_C(0.1254) * t96 + PUMA560_C(2.0) * t109);
     const puma560_real_t t111 = parameters[XX2] + (t104 + t108 + t110);
+    /* link j2: inertia of it and all beyond */
     const puma560_real_t t113 = t112 * (parameters[YY2] + (t103 - t108 + (t98 + t110)) - t111);
-    const puma560_real_t t114 = t79 * t87 + t77 * t86;
+    const puma560_real_t t114 = t79 * t87 + t77 * t86; /* link j3: column of the mass matrix */
+    /* link j2: inertia of it and all beyond */
     const puma560_real_t t116 = (parameters[XY2] + (t106 + t77 * t107
         + PUMA560_C(-0.4318) * t114)) * (PUMA560_C(2.0) * t115);
     const puma560_real_t t117 = parameters[ZZ1] + (t111 + t112 * (t113 + t116))
         + PUMA560_C(3920.14984321) * parameters[IA1];
-    const puma560_real_t t118 = t34 * t47 - t36 * t39;
+    const puma560_real_t t118 = t34 * t47 - t36 * t39; /* link j6: column of the mass matrix */
     const puma560_real_t t119 = PUMA560_C(0.4318) * t118;
     const puma560_real_t t120 = t36 * t46 + t34 * t3 - t119;
     const puma560_real_t t121 = t19 + PUMA560_C(0.0203) * t118;
@@ -302,7 +317,7 @@ int puma560_forward_dynamics_standard(
     const puma560_real_t t123 = t115 * (t79 * t120 - t77 * t121 + PUMA560_C(-0.1254) * t80);
     const puma560_real_t t124 = t123 + t112 * t122;
     const puma560_real_t t125 = t124 * t4;
-    const puma560_real_t t126 = t34 * t52;
+    const puma560_real_t t126 = t34 * t52; /* link j5: column of the mass matrix */
     const puma560_real_t t127 = PUMA560_C(0.4318) * t126;
     const puma560_real_t t128 = t36 * t51 - t34 * t9 - t127;
     const puma560_real_t t129 = t17 - PUMA560_C(0.0203) * t126;
@@ -311,7 +326,7 @@ int puma560_forward_dynamics_standard(
         + t77 * t42));
     const puma560_real_t t132 = t130 + t112 * t131 + t124 * t5;
     const puma560_real_t t133 = t132 * t21;
-    const puma560_real_t t134 = PUMA560_C(-0.4318) * t66;
+    const puma560_real_t t134 = PUMA560_C(-0.4318) * t66; /* link j4: column of the mass matrix */
     const puma560_real_t t135 = t105 + t134;
     const puma560_real_t t136 = t28 - PUMA560_C(-0.0203) * t66;
     const puma560_real_t t137 = t115 * (t77 * t136 - t79 * t135 + PUMA560_C(0.1254) * t78);
@@ -319,13 +334,15 @@ int puma560_forward_dynamics_standard(
     const puma560_real_t t139 = t137 + t112 * t138 + t124 * t30 + t132 * t22;
     const puma560_real_t t140 = t139 * t57;
     const puma560_real_t t141 = t117 - t124 * t125 + t132 * t133 + t139 * t140;
+    /* link j4: inertia of it and all beyond */
     const puma560_real_t t142 = t63 + t34 * t64 + PUMA560_C(0.0203) * t44 - parameters[XZ3];
     const puma560_real_t t143 = parameters[YZ3] + t45;
-    const puma560_real_t t144 = t79 * t142 + t77 * t143;
+    const puma560_real_t t144 = t79 * t142 + t77 * t143; /* link j3: column of the mass matrix */
     const puma560_real_t t145 = t77 * t142 - t79 * t143 + PUMA560_C(0.1254) * t114;
     const puma560_real_t t146 = t115 * (t144 + PUMA560_C(0.1254) * t88) + t112 * t145 - t124 * t60;
     const puma560_real_t t147 = t146 + t132 * t59 + t139 * t58;
     const puma560_real_t t148 = t147 * t91;
+    /* link j3: inertia of it and all beyond */
     const puma560_real_t t149 = t144 + (PUMA560_C(0.4318) * t109 + PUMA560_C(0.1254) * (t88 + t97))
         - parameters[XZ2];
     const puma560_real_t t150 = t115 * t149 + t112 * (t145 - parameters[YZ2]) + t124 * t95;
@@ -342,36 +359,36 @@ int puma560_forward_dynamics_standard(
         puma560_zero(out, 6);
         return PUMA560_STATUS_PIVOT;
     }
-    const puma560_real_t t156 = t115 * dq[0];
+    const puma560_real_t t156 = t115 * dq[0]; /* link j2: motion */
     const puma560_real_t t157 = t112 * dq[0];
-    const puma560_real_t t158 = t79 * t156 + t77 * t157;
+    const puma560_real_t t158 = t79 * t156 + t77 * t157; /* link j3: motion */
     const puma560_real_t t159 = t77 * t156 - t79 * t157;
     const puma560_real_t t160 = t158 * t159;
     const puma560_real_t t161 = dq[1] + dq[2];
     const puma560_real_t t162 = t161 * t159;
-    const puma560_real_t t163 = PUMA560_C(-2.0) * t162;
+    const puma560_real_t t163 = PUMA560_C(-2.0) * t162; /* link j4: motion */
     const puma560_real_t t164 = t34 * t163 - t36 * t160;
     const puma560_real_t t165 = t34 * t161 + t36 * t158;
     const puma560_real_t t166 = dq[3] + t159;
     const puma560_real_t t167 = t165 * t166;
     const puma560_real_t t168 = t164 + t167;
-    const puma560_real_t t169 = t16 * t165 - t14 * t166;
+    const puma560_real_t t169 = t16 * t165 - t14 * t166; /* link j5: motion */
     const puma560_real_t t170 = t14 * t165 + t16 * t166;
     const puma560_real_t t171 = t169 * t170;
-    const puma560_real_t t172 = t168 - t171;
-    const puma560_real_t t173 = t34 * t160 + t36 * t163;
+    const puma560_real_t t172 = t168 - t171; /* link j6: motion */
+    const puma560_real_t t173 = t34 * t160 + t36 * t163; /* link j4: motion */
     const puma560_real_t t174 = t36 * t161 - t34 * t158;
     const puma560_real_t t175 = t174 * t166;
     const puma560_real_t t176 = t173 + t175;
-    const puma560_real_t t177 = t175 + t176;
-    const puma560_real_t t178 = t165 * t174;
-    const puma560_real_t t179 = t161 * t158;
-    const puma560_real_t t180 = t178 - t179;
+    const puma560_real_t t177 = t175 + t176; /* link j5: motion */
+    const puma560_real_t t178 = t165 * t174; /* link j4: motion */
+    const puma560_real_t t179 = t161 * t158; /* link j3: motion */
+    const puma560_real_t t180 = t178 - t179; /* link j5: motion */
     const puma560_real_t t181 = t14 * t180 + t16 * t177;
     const puma560_real_t t182 = dq[4] + t174;
     const puma560_real_t t183 = t170 * t182;
     const puma560_real_t t184 = t181 - t183;
-    const puma560_real_t t185 = t184 - t183;
+    const puma560_real_t t185 = t184 - t183; /* link j6: motion */
     const puma560_real_t t186 = t1 * t172 - t2 * t185;
     const puma560_real_t t187 = t1 * t169 - t2 * t182;
     const puma560_real_t t188 = dq[5] + t170;
@@ -381,183 +398,226 @@ int puma560_forward_dynamics_standard(
     const puma560_real_t t192 = t2 * t169 + t1 * t182;
     const puma560_real_t t193 = t192 * t188;
     const puma560_real_t t194 = t191 + t193;
-    const puma560_real_t t195 = t193 + t194;
+    const puma560_real_t t195 = t193 + t194; /* link j6: force and moment */
     const puma560_real_t t196 = parameters[XX6] * t190 + t189 * (parameters[ZZ6] - parameters[YY6])
         + parameters[XY6] * t195;
-    const puma560_real_t t197 = t14 * t177 - t16 * t180;
+    const puma560_real_t t197 = t14 * t177 - t16 * t180; /* link j5: motion */
     const puma560_real_t t198 = t169 * t182;
     const puma560_real_t t199 = t197 + t198;
-    const puma560_real_t t200 = t192 * t187;
-    const puma560_real_t t201 = t199 - t200;
-    const puma560_real_t t202 = t187 * t187;
+    const puma560_real_t t200 = t192 * t187; /* link j6: motion */
+    const puma560_real_t t201 = t199 - t200; /* link j6: force and moment */
+    const puma560_real_t t202 = t187 * t187; /* link j6: motion */
     const puma560_real_t t203 = t188 * t188;
-    const puma560_real_t t204 = t159 * t159;
+    const puma560_real_t t204 = t159 * t159; /* link j3: motion */
     const puma560_real_t t205 = t161 * t161;
-    const puma560_real_t t206 = t205 + t204;
-    const puma560_real_t t207 = t157 * t157;
+    const puma560_real_t t206 = t205 + t204; /* link j4: motion */
+    const puma560_real_t t207 = t157 * t157; /* link j2: motion */
     const puma560_real_t t208 = dq[1] * dq[1];
     const puma560_real_t t209 = PUMA560_C(-9.81) * t115;
-    const puma560_real_t t210 = t209 + PUMA560_C(-0.4318) * (t207 + t208);
-    const puma560_real_t t211 = t156 * t157;
+    const puma560_real_t t210 = t209 + PUMA560_C(-0.4318) * (t207 + t208); /* link j3: columns */
+    const puma560_real_t t211 = t156 * t157; /* link j2: motion */
     const puma560_real_t t212 = PUMA560_C(9.81) * t112;
-    const puma560_real_t t213 = t212 - PUMA560_C(0.4318) * t211;
+    const puma560_real_t t213 = t212 - PUMA560_C(0.4318) * t211; /* link j3: motion */
     const puma560_real_t t214 = t79 * t210 - t77 * t213;
+    /* link j4: motion */
     const puma560_real_t t215 = t214 + (PUMA560_C(-0.0203) * t206 + PUMA560_C(-0.4318) * t160);
-    const puma560_real_t t216 = t156 * t156;
+    const puma560_real_t t216 = t156 * t156; /* link j2: motion */
     const puma560_real_t t217 = dq[1] * t156;
+    /* link j3: motion */
     const puma560_real_t t218 = PUMA560_C(0.1254) * (t216 + t207) + PUMA560_C(0.8636) * t217;
+    /* link j4: motion */
     const puma560_real_t t219 = t218 + (PUMA560_C(0.0406) * t179 - PUMA560_C(0.8636) * t162);
     const puma560_real_t t220 = t36 * t215 + t34 * t219;
-    const puma560_real_t t221 = t158 * t158;
-    const puma560_real_t t222 = t205 + t221;
-    const puma560_real_t t223 = t77 * t210 + t79 * t213;
+    const puma560_real_t t221 = t158 * t158; /* link j3: motion */
+    const puma560_real_t t222 = t205 + t221; /* link j4: motion */
+    const puma560_real_t t223 = t77 * t210 + t79 * t213; /* link j3: motion */
+    /* link j4: motion */
     const puma560_real_t t224 = t223 + (PUMA560_C(0.0203) * t160 + PUMA560_C(0.4318) * t222);
-    const puma560_real_t t225 = t16 * t220 - t14 * t224;
-    const puma560_real_t t226 = t34 * t215 - t36 * t219;
-    const puma560_real_t t227 = t1 * t225 + t2 * t226;
-    const puma560_real_t t228 = t14 * t220 + t16 * t224;
+    const puma560_real_t t225 = t16 * t220 - t14 * t224; /* link j5: motion */
+    const puma560_real_t t226 = t34 * t215 - t36 * t219; /* link j4: motion */
+    const puma560_real_t t227 = t1 * t225 + t2 * t226; /* link j6: motion */
+    const puma560_real_t t228 = t14 * t220 + t16 * t224; /* link j5: motion */
+    /* link j6: force and moment */
     const puma560_real_t t229 = t196 + parameters[XZ6] * t201 + parameters[YZ6] * (t202 - t203)
         + (parameters[MZ6] * t227 - parameters[MY6] * t228);
     const puma560_real_t t230 = t189 + t190;
     const puma560_real_t t231 = parameters[YY6] * t194 + t193 * (parameters[ZZ6] - parameters[XX6])
         + parameters[XY6] * t230;
     const puma560_real_t t232 = t199 + t200;
-    const puma560_real_t t233 = t192 * t192;
+    const puma560_real_t t233 = t192 * t192; /* link j6: motion */
     const puma560_real_t t234 = t2 * t225 - t1 * t226;
+    /* link j6: force and moment */
     const puma560_real_t t235 = t231 + parameters[YZ6] * t232 + parameters[XZ6] * (t203 - t233)
         + (parameters[MZ6] * t234 + parameters[MX6] * t228);
-    const puma560_real_t t236 = t198 + t199;
+    const puma560_real_t t236 = t198 + t199; /* link j6: motion */
+    /* link j5: force and moment */
     const puma560_real_t t237 = parameters[XY5] * t236 - (parameters[XX5] * t184 + t183 * (parameters[YY5]
         - parameters[ZZ5]));
-    const puma560_real_t t238 = t168 + t171;
-    const puma560_real_t t239 = t170 * t170;
+    const puma560_real_t t238 = t168 + t171; /* link j6: motion */
+    const puma560_real_t t239 = t170 * t170; /* link j5: motion */
     const puma560_real_t t240 = t182 * t182;
+    /* link j5: force and moment */
     const puma560_real_t t241 = t237 - parameters[XZ5] * t238 + parameters[YZ5] * (t239 - t240)
         + (parameters[MY5] * t226 + parameters[MZ5] * t228);
-    const puma560_real_t t242 = t241 - (t1 * t235 - t2 * t229);
+    const puma560_real_t t242 = t241 - (t1 * t235 - t2 * t229); /* link j6: what it passes on */
+    /* link j5: force and moment */
     const puma560_real_t t243 = t198 * (parameters[XX5] - parameters[ZZ5]) - parameters[YY5] * t199
         + parameters[XY5] * t185;
-    const puma560_real_t t244 = t169 * t169;
+    const puma560_real_t t244 = t169 * t169; /* link j5: motion */
+    /* link j5: force and moment */
     const puma560_real_t t245 = t243 + parameters[YZ5] * t172 + parameters[XZ5] * (t244 - t240)
         + (parameters[MX5] * t226 - parameters[MZ5] * t225);
+    /* link j6: force and moment */
     const puma560_real_t t246 = t6 * t200 - parameters[ZZ6] * t199 - parameters[YZ6] * t191
         - parameters[XZ6] * t186;
     const puma560_real_t t247 = t246 + parameters[XY6] * (t202 - t233) + (parameters[MX6] * t227
         + parameters[MY6] * t234);
-    const puma560_real_t t248 = t245 + t247;
-    const puma560_real_t t249 = t167 + t168;
+    const puma560_real_t t248 = t245 + t247; /* link j6: what it passes on */
+    const puma560_real_t t249 = t167 + t168; /* link j5: motion */
+    /* link j4: force and moment */
     const puma560_real_t t250 = t175 * (parameters[YY4] - parameters[ZZ4]) - parameters[XX4] * t176
         + parameters[XY4] * t249;
-    const puma560_real_t t251 = t179 + t178;
-    const puma560_real_t t252 = t174 * t174;
+    const puma560_real_t t251 = t179 + t178; /* link j5: motion */
+    const puma560_real_t t252 = t174 * t174; /* link j4: motion */
     const puma560_real_t t253 = t166 * t166;
+    /* link j4: force and moment */
     const puma560_real_t t254 = t250 + parameters[XZ4] * t251 + parameters[YZ4] * (t252 - t253)
         + (parameters[MZ4] * t226 - parameters[MY4] * t224);
-    const puma560_real_t t255 = t254 + (t16 * t242 + t14 * t248);
+    const puma560_real_t t255 = t254 + (t16 * t242 + t14 * t248); /* link j5: what it passes on */
+    /* link j5: force and moment */
     const puma560_real_t t256 = parameters[ZZ5] * t168 + t171 * (parameters[YY5] - parameters[XX5])
         - parameters[YZ5] * t197;
     const puma560_real_t t257 = t256 + parameters[XZ5] * t181 + parameters[XY5] * (t239 - t244)
         + (parameters[MX5] * t228 + parameters[MY5] * t225);
-    const puma560_real_t t258 = t257 + (t1 * t229 + t2 * t235);
+    const puma560_real_t t258 = t257 + (t1 * t229 + t2 * t235); /* link j6: what it passes on */
+    /* link j4: force and moment */
     const puma560_real_t t259 = t167 * (parameters[XX4] - parameters[ZZ4]) - parameters[YY4] * t168
         + parameters[XY4] * t177;
-    const puma560_real_t t260 = t165 * t165;
+    const puma560_real_t t260 = t165 * t165; /* link j4: motion */
+    /* link j4: force and moment */
     const puma560_real_t t261 = t259 + parameters[YZ4] * t180 + parameters[XZ4] * (t260 - t253)
         - (parameters[MZ4] * t220 + parameters[MX4] * t224);
-    const puma560_real_t t262 = t261 - t258;
+    const puma560_real_t t262 = t261 - t258; /* link j5: what it passes on */
+    /* link j6: force and moment */
     const puma560_real_t t263 = parameters[MX6] * (t202 + t203) + parameters[MY6] * t232
         - parameters[MZ6] * t191;
     const puma560_real_t t264 = t263 - parameters[M6] * t234;
     const puma560_real_t t265 = parameters[MX6] * t201 - parameters[MY6] * (t233 + t203)
         - parameters[MZ6] * t186;
     const puma560_real_t t266 = t265 - parameters[M6] * t227;
+    /* link j5: force and moment */
     const puma560_real_t t267 = parameters[MX5] * (t239 + t240) - parameters[MY5] * t172
         - parameters[MZ5] * t197;
+    /* link j6: what it passes on */
     const puma560_real_t t268 = t267 - parameters[M5] * t225 + (t2 * t264 + t1 * t266);
+    /* link j5: force and moment */
     const puma560_real_t t269 = parameters[MX5] * t238 + parameters[MY5] * (t244 + t240)
         - parameters[MZ5] * t181;
+    /* link j6: force and moment */
     const puma560_real_t t270 = parameters[MX6] * t195 - parameters[MY6] * t230 + parameters[MZ6] * (t233
         + t202);
+    /* link j6: what it passes on */
     const puma560_real_t t271 = parameters[M5] * t228 + t269 + (parameters[M6] * t228 + t270);
+    /* link j4: force and moment */
     const puma560_real_t t272 = parameters[MY4] * t180 - parameters[MX4] * (t252 + t253)
         + parameters[MZ4] * t164;
+    /* link j5: what it passes on */
     const puma560_real_t t273 = parameters[M4] * t220 + t272 + (t14 * t271 - t16 * t268);
+    /* link j5: force and moment */
     const puma560_real_t t274 = parameters[MX5] * t236 + parameters[MY5] * t185 + parameters[MZ5] * (t244
         + t239);
+    /* link j6: what it passes on */
     const puma560_real_t t275 = t274 - parameters[M5] * t226 - (t1 * t264 - t2 * t266);
+    /* link j4: force and moment */
     const puma560_real_t t276 = parameters[MX4] * t251 - parameters[MY4] * (t260 + t253)
         + parameters[MZ4] * t173;
-    const puma560_real_t t277 = t276 - parameters[M4] * t226 + t275;
-    const puma560_real_t t278 = t34 * t273 + t36 * t277;
-    const puma560_real_t t279 = PUMA560_C(2.0) * t179;
+    const puma560_real_t t277 = t276 - parameters[M4] * t226 + t275; /* link j5: what it passes on */
+    const puma560_real_t t278 = t34 * t273 + t36 * t277; /* link j4: what it passes on */
+    const puma560_real_t t279 = PUMA560_C(2.0) * t179; /* link j4: motion */
+    /* link j3: force and moment */
     const puma560_real_t t280 = parameters[XX3] * t162 + t162 * (parameters[ZZ3] - parameters[YY3])
         + parameters[XY3] * t279;
     const puma560_real_t t281 = t280 - parameters[XZ3] * t160 + parameters[YZ3] * (t204 - t205)
         + (parameters[MZ3] * t223 - parameters[MY3] * t218);
+    /* link j4: what it passes on */
     const puma560_real_t t282 = t281 + (t36 * t255 + t34 * t262 + PUMA560_C(-0.4318) * t278);
+    /* link j4: force and moment */
     const puma560_real_t t283 = t178 * (parameters[XX4] - parameters[YY4]) - parameters[ZZ4] * t179
         - parameters[YZ4] * t164;
     const puma560_real_t t284 = t283 + parameters[XZ4] * t173 + parameters[XY4] * (t252 - t260)
         + (parameters[MX4] * t226 + parameters[MY4] * t220);
-    const puma560_real_t t285 = t284 + (t16 * t248 - t14 * t242);
+    const puma560_real_t t285 = t284 + (t16 * t248 - t14 * t242); /* link j5: what it passes on */
+    /* link j3: force and moment */
     const puma560_real_t t286 = parameters[YY3] * t179 - t179 * (parameters[XX3] - parameters[ZZ3])
         - parameters[XY3] * t163;
     const puma560_real_t t287 = t286 + parameters[YZ3] * t160 + parameters[XZ3] * (t205 - t221)
         + (parameters[MZ3] * t214 + parameters[MX3] * t218);
-    const puma560_real_t t288 = t287 - (t285 + PUMA560_C(-0.0203) * t278);
+    const puma560_real_t t288 = t287 - (t285 + PUMA560_C(-0.0203) * t278); /* link j4: what it passes on */
     const puma560_real_t t289 = t36 * t273 - t34 * t277;
     const puma560_real_t t290 = parameters[MX3] * t206 + parameters[MY3] * t160 - parameters[M3] * t214
         - t289;
+    /* link j4: force and moment */
     const puma560_real_t t291 = parameters[MX4] * t249 + parameters[MY4] * t177 + parameters[MZ4] * (t260
         + t252);
+    /* link j5: what it passes on */
     const puma560_real_t t292 = parameters[M4] * t224 + t291 + (t14 * t268 + t16 * t271);
+    /* link j4: what it passes on */
     const puma560_real_t t293 = parameters[M3] * t223 + (parameters[MX3] * t160 + parameters[MY3] * t222)
         + t292;
-    const puma560_real_t t294 = t77 * t290 + t79 * t293;
-    const puma560_real_t t295 = dq[1] * t157;
+    const puma560_real_t t294 = t77 * t290 + t79 * t293; /* link j3: what it passes on */
+    const puma560_real_t t295 = dq[1] * t157; /* link j2: motion */
+    /* link j2: force and moment */
     const puma560_real_t t296 = t295 * (parameters[YY2] - parameters[ZZ2]) - t295 * parameters[XX2]
         + PUMA560_C(2.0) * t217 * parameters[XY2];
     const puma560_real_t t297 = t296 + t211 * parameters[XZ2] + (t207 - t208) * parameters[YZ2]
         + t212 * parameters[MZ2];
+    /* link j3: what it passes on */
     const puma560_real_t t298 = t297 + (t79 * t282 - t77 * t288 + PUMA560_C(0.1254) * t294);
+    /* link j3: force and moment */
     const puma560_real_t t299 = parameters[MX3] * t279 + parameters[MY3] * t163 + parameters[MZ3] * (t221
         + t204);
+    /* link j3: what it passes on */
     const puma560_real_t t300 = PUMA560_C(0.1254) * (t77 * t293 - t79 * t290)
         + PUMA560_C(0.4318) * (parameters[M3] * t218 + t299 + t278);
+    /* link j2: force and moment */
     const puma560_real_t t301 = t217 * parameters[YY2] + t217 * (parameters[ZZ2] - parameters[XX2])
         + PUMA560_C(-2.0) * t295 * parameters[XY2];
     const puma560_real_t t302 = t301 - t211 * parameters[YZ2] + (t208 - t216) * parameters[XZ2]
         + t209 * parameters[MZ2];
+    /* link j2: what it passes on */
     const puma560_real_t t303 = t112 * (t302 + (t77 * t282 + t79 * t288 + t300));
-    const puma560_real_t t304 = puma560_sign(dq[0]);
+    const puma560_real_t t304 = puma560_sign(dq[0]); /* joint j1: coulomb_friction */
     const puma560_real_t t305 = PUMA560_C(62.6111) * (PUMA560_C(-62.6111) * dq[0] * parameters[FV1]
         - t304 * parameters[FC1]) + (t115 * t298 + t303);
-    const puma560_real_t t306 = puma560_sign(dq[5]);
+    const puma560_real_t t306 = puma560_sign(dq[5]); /* joint j6: coulomb_friction */
     const puma560_real_t t307 = PUMA560_C(76.686) * (PUMA560_C(-76.686) * dq[5] * parameters[FV6]
         - t306 * parameters[FC6]) + t247;
     const puma560_real_t t308 = PUMA560_C(5.368020000000001) * input[5] + t307;
-    const puma560_real_t t309 = puma560_sign(dq[4]);
+    const puma560_real_t t309 = puma560_sign(dq[4]); /* joint j5: coulomb_friction */
     const puma560_real_t t310 = PUMA560_C(71.923) * (PUMA560_C(-71.923) * dq[4] * parameters[FV5]
         - t309 * parameters[FC5]) + t258;
     const puma560_real_t t311 = PUMA560_C(5.034610000000001) * input[4] + t310 + t308 * t5;
     const puma560_real_t t312 = PUMA560_C(-14.400553) * input[0] + t305 - t308 * t125 + t311 * t133;
-    const puma560_real_t t313 = puma560_sign(dq[3]);
+    const puma560_real_t t313 = puma560_sign(dq[3]); /* joint j4: coulomb_friction */
     const puma560_real_t t314 = PUMA560_C(76.0364) * (PUMA560_C(-76.0364) * dq[3] * parameters[FV4]
         - t313 * parameters[FC4]) + t285;
     const puma560_real_t t315 = PUMA560_C(5.322548) * input[3] + t314 + t308 * t30 + t311 * t22;
+    /* link j4: what it passes on */
     const puma560_real_t t316 = t34 * t255 - t36 * t262 + (PUMA560_C(0.0203) * t292
         + PUMA560_C(0.4318) * t289);
+    /* link j3: force and moment */
     const puma560_real_t t317 = t160 * (parameters[YY3] - parameters[XX3]) + parameters[XY3] * (t204 - t221)
         + (parameters[MX3] * t223 + parameters[MY3] * t214);
-    const puma560_real_t t318 = t317 + t316;
-    const puma560_real_t t319 = puma560_sign(dq[2]);
+    const puma560_real_t t318 = t317 + t316; /* link j4: what it passes on */
+    const puma560_real_t t319 = puma560_sign(dq[2]); /* joint j3: coulomb_friction */
     const puma560_real_t t320 = PUMA560_C(53.7063) * (PUMA560_C(-53.7063) * dq[2] * parameters[FV3]
         - t319 * parameters[FC3]) + t318;
     const puma560_real_t t321 = PUMA560_C(-12.352449) * input[2] + t320 - t308 * t60 + t311 * t59;
     const puma560_real_t t322 = t321 + t315 * t58;
+    /* link j2: force and moment */
     const puma560_real_t t323 = t211 * (parameters[XX2] - parameters[YY2]) + (t207 - t216) * parameters[XY2]
         + (t212 * parameters[MX2] + t209 * parameters[MY2]);
-    const puma560_real_t t324 = puma560_sign(dq[1]);
+    const puma560_real_t t324 = puma560_sign(dq[1]); /* joint j2: coulomb_friction */
     const puma560_real_t t325 = PUMA560_C(107.815) * (PUMA560_C(-107.815) * dq[1] * parameters[FV2]
         - t324 * parameters[FC2]) + (t323 + (t318 + PUMA560_C(0.4318) * t294));
     const puma560_real_t t326 = PUMA560_C(24.79745) * input[1] + t325 + t308 * t95 - t311 * t94;

@@ -28,15 +28,15 @@
  */
 #include "puma560_private.h"
 
-#if PUMA560_GENERATION != 0xAC9DC6F4UL
+#if PUMA560_GENERATION != 0x0486C622UL
 #error "puma560.h and puma560_forward_kinematics.c are of different generations: generate the arm again"
 #endif
 
-int puma560_forward_kinematics(
+puma560_status_t puma560_forward_kinematics(
     const puma560_real_t q[PUMA560_N_JOINTS],
     puma560_real_t out[16 * PUMA560_N_LINKS])
 {
-    int status = PUMA560_STATUS_OK;
+    puma560_status_t status = PUMA560_STATUS_OK;
 
     if (!puma560_within_joints(q, PUMA560_C(1.0e8))) {
         status |= PUMA560_STATUS_INPUT;
@@ -64,7 +64,7 @@ int puma560_forward_kinematics(
     out[5] = t0;
     out[10] = PUMA560_C(1.0);
     out[15] = PUMA560_C(1.0);
-    const puma560_real_t t3 = t0 * t2;
+    const puma560_real_t t3 = t0 * t2; /* link j2: pose */
     out[16] = t3;
     const puma560_real_t t5 = t0 * t4;
     out[17] = -t5;
@@ -77,7 +77,7 @@ int puma560_forward_kinematics(
     out[24] = -t4;
     out[25] = -t2;
     out[31] = PUMA560_C(1.0);
-    const puma560_real_t t10 = t8 * t3 - t9 * t5;
+    const puma560_real_t t10 = t8 * t3 - t9 * t5; /* link j3: pose */
     out[32] = t10;
     const puma560_real_t t11 = t9 * t3 + t8 * t5;
     out[33] = -t11;
@@ -91,14 +91,14 @@ int puma560_forward_kinematics(
     out[38] = t0;
     const puma560_real_t t15 = PUMA560_C(0.4318) * t6 + PUMA560_C(0.1254) * t0;
     out[39] = t15;
-    const puma560_real_t t16 = t4 * t8 + t2 * t9;
+    const puma560_real_t t16 = t4 * t8 + t2 * t9; /* link j3: motion */
     out[40] = -t16;
     const puma560_real_t t17 = t4 * t9 - t2 * t8;
     out[41] = t17;
-    const puma560_real_t t18 = PUMA560_C(-0.4318) * t4;
+    const puma560_real_t t18 = PUMA560_C(-0.4318) * t4; /* link j3: pose */
     out[43] = t18;
     out[47] = PUMA560_C(1.0);
-    const puma560_real_t t21 = t19 * t10 + t1 * t20;
+    const puma560_real_t t21 = t19 * t10 + t1 * t20; /* link j4: pose */
     out[48] = t21;
     const puma560_real_t t22 = t1 * t19 - t20 * t10;
     out[49] = t22;
@@ -112,15 +112,15 @@ int puma560_forward_kinematics(
     out[54] = -t14;
     const puma560_real_t t26 = t15 + (PUMA560_C(0.0203) * t13 + PUMA560_C(-0.4318) * t14);
     out[55] = t26;
-    const puma560_real_t t27 = t19 * t16;
+    const puma560_real_t t27 = t19 * t16; /* link j4: velocities by those of the joints */
     out[56] = -t27;
     const puma560_real_t t28 = t20 * t16;
     out[57] = t28;
     out[58] = t17;
-    const puma560_real_t t29 = t18 + (PUMA560_C(-0.0203) * t16 + PUMA560_C(0.4318) * t17);
+    const puma560_real_t t29 = t18 + (PUMA560_C(-0.0203) * t16 + PUMA560_C(0.4318) * t17); /* link j4: pose */
     out[59] = t29;
     out[63] = PUMA560_C(1.0);
-    const puma560_real_t t32 = t30 * t21 - t31 * t11;
+    const puma560_real_t t32 = t30 * t21 - t31 * t11; /* link j5: pose */
     out[64] = t32;
     const puma560_real_t t33 = t31 * t21 + t30 * t11;
     out[65] = -t33;
@@ -132,7 +132,7 @@ int puma560_forward_kinematics(
     out[69] = -t35;
     out[70] = t25;
     out[71] = t26;
-    const puma560_real_t t36 = t31 * t17 - t30 * t27;
+    const puma560_real_t t36 = t31 * t17 - t30 * t27; /* link j5: velocities by those of the joints */
     out[72] = t36;
     const puma560_real_t t37 = t31 * t27 + t30 * t17;
     out[73] = t37;

@@ -79,11 +79,11 @@
  */
 #include "puma560_private.h"
 
-#if PUMA560_GENERATION != 0xAC9DC6F4UL
+#if PUMA560_GENERATION != 0x0486C622UL
 #error "puma560.h and puma560_gravity.c are of different generations: generate the arm again"
 #endif
 
-int puma560_gravity(
+puma560_status_t puma560_gravity(
     const puma560_real_t q[PUMA560_N_JOINTS],
     const puma560_real_t parameters[PUMA560_N_PARAMETERS],
     puma560_real_t out[PUMA560_N_JOINTS])
@@ -91,7 +91,7 @@ int puma560_gravity(
     enum { ZZ1R = 0, XX2R, XY2, XZ2R, YZ2, ZZ2R, MX2R, MY2, XX3R, XY3R, XZ3, YZ3, ZZ3R, MX3R, MY3R, XX4R, XY4,
         XZ4, YZ4, ZZ4R, MX4, MY4R, XX5R, XY5, XZ5, YZ5, ZZ5R, MX5, MY5R, XX6R, XY6, XZ6, YZ6, ZZ6, MX6, MY6,
         FV1, FC1, FV2, FC2, FV3, FC3, IA3, FV4, FC4, IA4, FV5, FC5, IA5, FV6, FC6, IA6 };
-    int status = PUMA560_STATUS_OK;
+    puma560_status_t status = PUMA560_STATUS_OK;
 
     if (!puma560_within_joints(q, PUMA560_C(1.0e8))
         || !PUMA560_PARAMETERS_USABLE(puma560_within(parameters, 52, PUMA560_C(1.0e18)))) {
@@ -112,27 +112,34 @@ int puma560_gravity(
     PUMA560_SINCOS(q[4], &t9, &t11);
     puma560_real_t t16, t14;
     PUMA560_SINCOS(q[5], &t16, &t14);
-    const puma560_real_t t1 = PUMA560_C(9.81) * t0;
+    const puma560_real_t t1 = PUMA560_C(9.81) * t0; /* link j2: motion */
     const puma560_real_t t4 = PUMA560_C(-9.81) * t3;
-    const puma560_real_t t6 = t2 * t1 - t5 * t4;
-    const puma560_real_t t8 = t7 * t6;
-    const puma560_real_t t10 = t5 * t1 + t2 * t4;
-    const puma560_real_t t12 = t9 * t8 + t11 * t10;
-    const puma560_real_t t13 = parameters[MY6] * t12;
+    const puma560_real_t t6 = t2 * t1 - t5 * t4; /* link j3: motion */
+    const puma560_real_t t8 = t7 * t6; /* link j4: motion */
+    const puma560_real_t t10 = t5 * t1 + t2 * t4; /* link j3: motion */
+    const puma560_real_t t12 = t9 * t8 + t11 * t10; /* link j5: motion */
+    const puma560_real_t t13 = parameters[MY6] * t12; /* link j6: force and moment */
     const puma560_real_t t15 = parameters[MX6] * t12;
-    const puma560_real_t t18 = t17 * t6;
+    const puma560_real_t t18 = t17 * t6; /* link j4: motion */
+    /* link j6: what it passes on */
     const puma560_real_t t19 = t14 * t13 + t16 * t15 - parameters[MY5R] * t18;
-    const puma560_real_t t20 = t11 * t8 - t9 * t10;
+    const puma560_real_t t20 = t11 * t8 - t9 * t10; /* link j5: motion */
+    /* link j6: force and moment */
     const puma560_real_t t21 = parameters[MX6] * (t16 * t20 + t14 * t18) + parameters[MY6] * (t14 * t20
         - t16 * t18);
-    const puma560_real_t t22 = parameters[MX5] * t18 + t21;
+    const puma560_real_t t22 = parameters[MX5] * t18 + t21; /* link j6: what it passes on */
+    /* link j5: what it passes on */
     const puma560_real_t t23 = parameters[MY4R] * t10 - (t9 * t22 - t11 * t19);
+    /* link j6: what it passes on */
     const puma560_real_t t24 = parameters[MX5] * t12 + parameters[MY5R] * t20 + (t14 * t15 - t16 * t13);
-    const puma560_real_t t25 = parameters[MX4] * t10 + t24;
-    const puma560_real_t t26 = t7 * t23 + t17 * t25;
+    const puma560_real_t t25 = parameters[MX4] * t10 + t24; /* link j5: what it passes on */
+    const puma560_real_t t26 = t7 * t23 + t17 * t25; /* link j4: what it passes on */
+    /* link j5: what it passes on */
     const puma560_real_t t27 = parameters[MX4] * t18 + parameters[MY4R] * t8 + (t9 * t19 + t11 * t22);
+    /* link j2: what it passes on */
     const puma560_real_t t28 = t0 * (t2 * t26 - t5 * t27) + t3 * (t5 * t26 + t2 * t27);
     out[0] = PUMA560_C(0.06944177768728742) * t28;
+    /* link j4: what it passes on */
     const puma560_real_t t29 = parameters[MX3R] * t10 + parameters[MY3R] * t6 + (t7 * t25 - t17 * t23);
     out[1] = PUMA560_C(0.04032672714331514) * (parameters[MX2R] * t4 + parameters[MY2] * t1 + t29);
     out[2] = PUMA560_C(-0.08095560645504385) * t29;

@@ -104,11 +104,11 @@
  */
 #include "puma560_private.h"
 
-#if PUMA560_GENERATION != 0xAC9DC6F4UL
+#if PUMA560_GENERATION != 0x0486C622UL
 #error "puma560.h and puma560_gravity_standard.c are of different generations: generate the arm again"
 #endif
 
-int puma560_gravity_standard(
+puma560_status_t puma560_gravity_standard(
     const puma560_real_t q[PUMA560_N_JOINTS],
     const puma560_real_t parameters[PUMA560_N_STANDARD_PARAMETERS],
     puma560_real_t out[PUMA560_N_JOINTS])
@@ -117,7 +117,7 @@ int puma560_gravity_standard(
         M2, XX3, XY3, XZ3, YY3, YZ3, ZZ3, MX3, MY3, MZ3, M3, XX4, XY4, XZ4, YY4, YZ4, ZZ4, MX4, MY4, MZ4, M4,
         XX5, XY5, XZ5, YY5, YZ5, ZZ5, MX5, MY5, MZ5, M5, XX6, XY6, XZ6, YY6, YZ6, ZZ6, MX6, MY6, MZ6, M6, FV1,
         FC1, IA1, FV2, FC2, IA2, FV3, FC3, IA3, FV4, FC4, IA4, FV5, FC5, IA5, FV6, FC6, IA6 };
-    int status = PUMA560_STATUS_OK;
+    puma560_status_t status = PUMA560_STATUS_OK;
 
     if (!puma560_within_joints(q, PUMA560_C(1.0e8))
         || !PUMA560_PARAMETERS_USABLE(puma560_within(parameters, 78, PUMA560_C(1.0e18)))) {
@@ -138,47 +138,57 @@ int puma560_gravity_standard(
     PUMA560_SINCOS(q[4], &t9, &t11);
     puma560_real_t t14, t17;
     PUMA560_SINCOS(q[5], &t14, &t17);
-    const puma560_real_t t1 = PUMA560_C(-9.81) * t0;
+    const puma560_real_t t1 = PUMA560_C(-9.81) * t0; /* link j2: motion */
     const puma560_real_t t4 = PUMA560_C(9.81) * t3;
-    const puma560_real_t t6 = t5 * t4 - t2 * t1;
-    const puma560_real_t t8 = t7 * t6;
-    const puma560_real_t t10 = t5 * t1 + t2 * t4;
-    const puma560_real_t t12 = t11 * t10 - t9 * t8;
+    const puma560_real_t t6 = t5 * t4 - t2 * t1; /* link j3: motion */
+    const puma560_real_t t8 = t7 * t6; /* link j4: motion */
+    const puma560_real_t t10 = t5 * t1 + t2 * t4; /* link j3: motion */
+    const puma560_real_t t12 = t11 * t10 - t9 * t8; /* link j5: motion */
     const puma560_real_t t13 = t11 * t8 + t9 * t10;
-    const puma560_real_t t16 = t15 * t6;
-    const puma560_real_t t18 = t14 * t13 + t17 * t16;
-    const puma560_real_t t19 = t12 * parameters[MY6] + t18 * parameters[MZ6];
-    const puma560_real_t t20 = t17 * t13 - t14 * t16;
-    const puma560_real_t t21 = t20 * parameters[MZ6] - t12 * parameters[MX6];
+    const puma560_real_t t16 = t15 * t6; /* link j4: motion */
+    const puma560_real_t t18 = t14 * t13 + t17 * t16; /* link j6: motion */
+    const puma560_real_t t19 = t12 * parameters[MY6] + t18 * parameters[MZ6]; /* link j6: force and moment */
+    const puma560_real_t t20 = t17 * t13 - t14 * t16; /* link j6: motion */
+    const puma560_real_t t21 = t20 * parameters[MZ6] - t12 * parameters[MX6]; /* link j6: force and moment */
+    /* link j6: what it passes on */
     const puma560_real_t t22 = t12 * parameters[MZ5] - t16 * parameters[MY5] + (t14 * t21 - t17 * t19);
-    const puma560_real_t t23 = t18 * parameters[MX6] + t20 * parameters[MY6];
+    const puma560_real_t t23 = t18 * parameters[MX6] + t20 * parameters[MY6]; /* link j6: force and moment */
+    /* link j6: what it passes on */
     const puma560_real_t t24 = t16 * parameters[MX5] - t13 * parameters[MZ5] + t23;
+    /* link j5: what it passes on */
     const puma560_real_t t25 = t10 * parameters[MY4] + t16 * parameters[MZ4] + (t9 * t24 - t11 * t22);
+    /* link j6: what it passes on */
     const puma560_real_t t26 = t13 * parameters[MY5] - t12 * parameters[MX5] + (t14 * t19 + t17 * t21);
+    /* link j5: what it passes on */
     const puma560_real_t t27 = t8 * parameters[MZ4] - t10 * parameters[MX4] + t26;
-    const puma560_real_t t28 = t20 * parameters[M6];
+    const puma560_real_t t28 = t20 * parameters[M6]; /* link j6: force and moment */
     const puma560_real_t t29 = t18 * parameters[M6];
+    /* link j6: what it passes on */
     const puma560_real_t t30 = t13 * parameters[M5] + (t17 * t28 + t14 * t29);
     const puma560_real_t t31 = t12 * parameters[M5] + t12 * parameters[M6];
-    const puma560_real_t t32 = t9 * t31 - t11 * t30 - t8 * parameters[M4];
+    const puma560_real_t t32 = t9 * t31 - t11 * t30 - t8 * parameters[M4]; /* link j5: what it passes on */
     const puma560_real_t t33 = t14 * t28 - t17 * t29 - t16 * parameters[M5] - t16 * parameters[M4];
-    const puma560_real_t t34 = t7 * t33 - t15 * t32;
+    const puma560_real_t t34 = t7 * t33 - t15 * t32; /* link j4: what it passes on */
     const puma560_real_t t35 = PUMA560_C(0.4318) * t34;
     const puma560_real_t t36 = t10 * parameters[MZ3] + (t15 * t27 - t7 * t25 + t35);
+    /* link j5: what it passes on */
     const puma560_real_t t37 = t16 * parameters[MX4] + t8 * parameters[MY4] + (t9 * t22 + t11 * t24);
+    /* link j4: what it passes on */
     const puma560_real_t t38 = t6 * parameters[MZ3] - (t37 - PUMA560_C(0.0203) * t34);
     const puma560_real_t t39 = t7 * t32 + t15 * t33;
     const puma560_real_t t40 = t39 - t6 * parameters[M3];
-    const puma560_real_t t41 = t10 * parameters[M4] + (t9 * t30 + t11 * t31);
-    const puma560_real_t t42 = t10 * parameters[M3] + t41;
-    const puma560_real_t t43 = t2 * t42 - t5 * t40;
+    const puma560_real_t t41 = t10 * parameters[M4] + (t9 * t30 + t11 * t31); /* link j5: what it passes on */
+    const puma560_real_t t42 = t10 * parameters[M3] + t41; /* link j4: what it passes on */
+    const puma560_real_t t43 = t2 * t42 - t5 * t40; /* link j3: what it passes on */
     const puma560_real_t t44 = t4 * parameters[MZ2] + (t2 * t36 + t5 * t38 + PUMA560_C(0.1254) * t43);
     const puma560_real_t t45 = t5 * t36 - t2 * t38 + (PUMA560_C(0.1254) * (t2 * t40 + t5 * t42) - t35);
     const puma560_real_t t46 = PUMA560_C(0.06944177768728742) * (t0 * t44 + t3 * (t1 * parameters[MZ2]
         + t45));
     out[0] = t46;
+    /* link j4: what it passes on */
     const puma560_real_t t47 = t15 * t25 + t7 * t27 + (PUMA560_C(-0.0203) * t41 + PUMA560_C(-0.4318) * t39);
     const puma560_real_t t48 = t6 * parameters[MY3] - t10 * parameters[MX3] + t47;
+    /* link j3: what it passes on */
     const puma560_real_t t49 = t48 + PUMA560_C(-0.4318) * t43 - (t4 * parameters[MX2] + t1 * parameters[MY2]);
     out[1] = PUMA560_C(0.04032672714331514) * t49;
     out[2] = PUMA560_C(-0.08095560645504385) * t48;

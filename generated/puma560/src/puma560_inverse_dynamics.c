@@ -6,7 +6,7 @@
  * Arm puma560, description e8eb13fe224405b2.
  * SPDX-License-Identifier: 0BSD
  *
- * Operations: 538 (289 mul, 249 add, 0 neg), 10 trig, 6 other.
+ * Operations: 538 (289 mul, 249 add, 0 neg), 10 trig, 6 other calls (sign, select and the like).
  *
  * @param[in]   q           [6]   [rad]      joint coordinates; norm at most 10000
  * @param[in]   dq          [6]   [rad/s]    joint velocities; norm at most 100000
@@ -81,11 +81,11 @@
  */
 #include "puma560_private.h"
 
-#if PUMA560_GENERATION != 0xAC9DC6F4UL
+#if PUMA560_GENERATION != 0x0486C622UL
 #error "puma560.h and puma560_inverse_dynamics.c are of different generations: generate the arm again"
 #endif
 
-int puma560_inverse_dynamics(
+puma560_status_t puma560_inverse_dynamics(
     const puma560_real_t q[PUMA560_N_JOINTS],
     const puma560_real_t dq[PUMA560_N_JOINTS],
     const puma560_real_t ddq[PUMA560_N_JOINTS],
@@ -95,7 +95,7 @@ int puma560_inverse_dynamics(
     enum { ZZ1R = 0, XX2R, XY2, XZ2R, YZ2, ZZ2R, MX2R, MY2, XX3R, XY3R, XZ3, YZ3, ZZ3R, MX3R, MY3R, XX4R, XY4,
         XZ4, YZ4, ZZ4R, MX4, MY4R, XX5R, XY5, XZ5, YZ5, ZZ5R, MX5, MY5R, XX6R, XY6, XZ6, YZ6, ZZ6, MX6, MY6,
         FV1, FC1, FV2, FC2, FV3, FC3, IA3, FV4, FC4, IA4, FV5, FC5, IA5, FV6, FC6, IA6 };
-    int status = PUMA560_STATUS_OK;
+    puma560_status_t status = PUMA560_STATUS_OK;
 
     if (!puma560_within_joints(q, PUMA560_C(1.0e8))
         || !puma560_within_joints(dq, PUMA560_C(1.0e10))
@@ -118,213 +118,248 @@ int puma560_inverse_dynamics(
     PUMA560_SINCOS(q[4], &t14, &t10);
     puma560_real_t t47, t30;
     PUMA560_SINCOS(q[5], &t47, &t30);
-    const puma560_real_t t4 = t0 * t1 + t2 * t3;
+    const puma560_real_t t4 = t0 * t1 + t2 * t3; /* link j3: motion */
     const puma560_real_t t5 = dq[0] * t4;
     const puma560_real_t t7 = dq[1] + dq[2];
-    const puma560_real_t t9 = t8 * t7 + t6 * t5;
-    const puma560_real_t t11 = t0 * t3 - t2 * t1;
+    const puma560_real_t t9 = t8 * t7 + t6 * t5; /* link j4: motion */
+    const puma560_real_t t11 = t0 * t3 - t2 * t1; /* link j3: motion */
     const puma560_real_t t12 = dq[0] * t11;
-    const puma560_real_t t13 = dq[3] + t12;
-    const puma560_real_t t15 = t10 * t9 - t14 * t13;
+    const puma560_real_t t13 = dq[3] + t12; /* link j4: motion */
+    const puma560_real_t t15 = t10 * t9 - t14 * t13; /* link j5: motion */
     const puma560_real_t t16 = t14 * t9 + t10 * t13;
     const puma560_real_t t17 = t15 * t16;
-    const puma560_real_t t18 = t5 * t12;
+    const puma560_real_t t18 = t5 * t12; /* link j3: motion */
     const puma560_real_t t19 = ddq[1] + ddq[2];
-    const puma560_real_t t20 = t18 + t19;
-    const puma560_real_t t21 = t7 * t12;
+    const puma560_real_t t20 = t18 + t19; /* link j4: motion */
+    const puma560_real_t t21 = t7 * t12; /* link j3: motion */
     const puma560_real_t t22 = ddq[0] * t4;
     const puma560_real_t t23 = t22 - t21;
-    const puma560_real_t t24 = t23 - t21;
+    const puma560_real_t t24 = t23 - t21; /* link j4: motion */
     const puma560_real_t t25 = t8 * t24 - t6 * t20;
     const puma560_real_t t26 = t9 * t13;
     const puma560_real_t t27 = t26 + t25;
-    const puma560_real_t t28 = ddq[4] - t27;
-    const puma560_real_t t29 = t17 + t28;
-    const puma560_real_t t31 = t6 * t7 - t8 * t5;
+    const puma560_real_t t28 = ddq[4] - t27; /* link j5: motion */
+    const puma560_real_t t29 = t17 + t28; /* link j6: motion */
+    const puma560_real_t t31 = t6 * t7 - t8 * t5; /* link j4: motion */
     const puma560_real_t t32 = t9 * t31;
-    const puma560_real_t t33 = t7 * t5;
+    const puma560_real_t t33 = t7 * t5; /* link j3: motion */
     const puma560_real_t t34 = ddq[0] * t11;
     const puma560_real_t t35 = t33 + t34;
-    const puma560_real_t t36 = ddq[3] + t35;
-    const puma560_real_t t37 = t32 - t36;
-    const puma560_real_t t38 = t8 * t20 + t6 * t24;
+    const puma560_real_t t36 = ddq[3] + t35; /* link j4: motion */
+    const puma560_real_t t37 = t32 - t36; /* link j5: motion */
+    const puma560_real_t t38 = t8 * t20 + t6 * t24; /* link j4: motion */
     const puma560_real_t t39 = t31 * t13;
     const puma560_real_t t40 = t39 + t38;
-    const puma560_real_t t41 = t39 + t40;
+    const puma560_real_t t41 = t39 + t40; /* link j5: motion */
     const puma560_real_t t42 = t14 * t37 + t10 * t41;
     const puma560_real_t t43 = dq[4] + t31;
     const puma560_real_t t44 = t16 * t43;
     const puma560_real_t t45 = t42 - t44;
-    const puma560_real_t t46 = t45 - t44;
+    const puma560_real_t t46 = t45 - t44; /* link j6: motion */
     const puma560_real_t t48 = t47 * t46 - t30 * t29;
-    const puma560_real_t t49 = t14 * t41 - t10 * t37;
+    const puma560_real_t t49 = t14 * t41 - t10 * t37; /* link j5: motion */
     const puma560_real_t t50 = t15 * t43;
     const puma560_real_t t51 = t50 + t49;
-    const puma560_real_t t52 = ddq[5] + t51;
+    const puma560_real_t t52 = ddq[5] + t51; /* link j6: motion */
     const puma560_real_t t53 = t30 * t15 + t47 * t43;
     const puma560_real_t t54 = t30 * t43 - t47 * t15;
     const puma560_real_t t55 = t53 * t54;
     const puma560_real_t t56 = t47 * t29 + t30 * t46;
+    /* link j6: force and moment */
     const puma560_real_t t57 = parameters[ZZ6] * t52 - parameters[XX6R] * t55 + parameters[YZ6] * t48
         - parameters[XZ6] * t56;
-    const puma560_real_t t58 = t53 * t53;
+    const puma560_real_t t58 = t53 * t53; /* link j6: motion */
     const puma560_real_t t59 = t54 * t54;
-    const puma560_real_t t60 = t12 * t12;
+    const puma560_real_t t60 = t12 * t12; /* link j3: motion */
     const puma560_real_t t61 = t7 * t7;
-    const puma560_real_t t62 = t61 + t60;
-    const puma560_real_t t63 = t2 * dq[0];
+    const puma560_real_t t62 = t61 + t60; /* link j4: motion */
+    const puma560_real_t t63 = t2 * dq[0]; /* link j2: motion */
     const puma560_real_t t64 = t63 * t63;
     const puma560_real_t t65 = dq[1] * dq[1];
     const puma560_real_t t66 = t2 * ddq[0];
     const puma560_real_t t67 = PUMA560_C(9.81) * t0;
+    /* link j3: motion */
     const puma560_real_t t68 = t67 + (PUMA560_C(0.4318) * (t65 + t64) + PUMA560_C(0.1254) * t66);
-    const puma560_real_t t69 = t0 * dq[0];
+    const puma560_real_t t69 = t0 * dq[0]; /* link j2: motion */
     const puma560_real_t t70 = t69 * t63;
-    const puma560_real_t t71 = ddq[1] + t70;
-    const puma560_real_t t72 = t0 * ddq[0];
+    const puma560_real_t t71 = ddq[1] + t70; /* link j3: motion */
+    const puma560_real_t t72 = t0 * ddq[0]; /* link j2: motion */
     const puma560_real_t t73 = PUMA560_C(-9.81) * t2;
+    /* link j3: motion */
     const puma560_real_t t74 = t73 + (PUMA560_C(0.4318) * t71 + PUMA560_C(0.1254) * t72);
     const puma560_real_t t75 = t1 * t68 - t3 * t74;
+    /* link j4: motion */
     const puma560_real_t t76 = t75 + (PUMA560_C(0.0203) * t62 + PUMA560_C(0.4318) * t20);
     const puma560_real_t t77 = t33 + t35;
-    const puma560_real_t t78 = t69 * t69;
+    const puma560_real_t t78 = t69 * t69; /* link j2: motion */
     const puma560_real_t t79 = dq[1] * t69;
-    const puma560_real_t t80 = t79 + (t79 - t66);
+    const puma560_real_t t80 = t79 + (t79 - t66); /* link j3: motion */
     const puma560_real_t t81 = PUMA560_C(-0.1254) * (t78 + t64) + PUMA560_C(-0.4318) * t80;
-    const puma560_real_t t82 = PUMA560_C(0.0203) * t77 - PUMA560_C(-0.4318) * t24 - t81;
+    const puma560_real_t t82 = PUMA560_C(0.0203) * t77 - PUMA560_C(-0.4318) * t24 - t81; /* link j4: motion */
     const puma560_real_t t83 = t6 * t76 - t8 * t82;
-    const puma560_real_t t84 = t5 * t5;
-    const puma560_real_t t85 = t61 + t84;
+    const puma560_real_t t84 = t5 * t5; /* link j3: motion */
+    const puma560_real_t t85 = t61 + t84; /* link j4: motion */
     const puma560_real_t t86 = t19 - t18;
-    const puma560_real_t t87 = t3 * t68 + t1 * t74;
+    const puma560_real_t t87 = t3 * t68 + t1 * t74; /* link j3: motion */
+    /* link j4: motion */
     const puma560_real_t t88 = t87 + (PUMA560_C(-0.4318) * t85 + PUMA560_C(0.0203) * t86);
-    const puma560_real_t t89 = t10 * t83 - t14 * t88;
-    const puma560_real_t t90 = t8 * t76 + t6 * t82;
+    const puma560_real_t t89 = t10 * t83 - t14 * t88; /* link j5: motion */
+    const puma560_real_t t90 = t8 * t76 + t6 * t82; /* link j4: motion */
+    /* link j6: force and moment */
     const puma560_real_t t91 = parameters[MX6] * (t47 * t89 + t30 * t90) + parameters[MY6] * (t30 * t89
         - t47 * t90);
     const puma560_real_t t92 = parameters[XY6] * (t58 - t59) + t57 + t91;
+    /* link j5: force and moment */
     const puma560_real_t t93 = (parameters[ZZ5R] - parameters[XX5R]) * t50 - parameters[XY5] * t46
         + parameters[YZ5] * t29;
-    const puma560_real_t t94 = t15 * t15;
+    const puma560_real_t t94 = t15 * t15; /* link j5: motion */
     const puma560_real_t t95 = t43 * t43;
+    /* link j6: what it passes on */
     const puma560_real_t t96 = parameters[XZ5] * (t95 - t94) + t93 + parameters[MX5] * t90 + t92;
-    const puma560_real_t t97 = dq[5] + t16;
+    const puma560_real_t t97 = dq[5] + t16; /* link j6: motion */
     const puma560_real_t t98 = t54 * t97;
     const puma560_real_t t99 = t98 + t56;
     const puma560_real_t t100 = t53 * t97;
-    const puma560_real_t t101 = t100 + (t100 + t48);
+    const puma560_real_t t101 = t100 + (t100 + t48); /* link j6: force and moment */
     const puma560_real_t t102 = t55 + t52;
     const puma560_real_t t103 = parameters[XY6] * t101 - (parameters[ZZ6] * t98 + parameters[XX6R] * t99)
         + parameters[XZ6] * t102;
-    const puma560_real_t t104 = t97 * t97;
-    const puma560_real_t t105 = t14 * t83 + t10 * t88;
+    const puma560_real_t t104 = t97 * t97; /* link j6: motion */
+    const puma560_real_t t105 = t14 * t83 + t10 * t88; /* link j5: motion */
+    /* link j6: force and moment */
     const puma560_real_t t106 = parameters[YZ6] * (t59 - t104) + t103 + parameters[MY6] * t105;
     const puma560_real_t t107 = t98 + t99;
     const puma560_real_t t108 = t55 - t52;
     const puma560_real_t t109 = (parameters[XX6R] - parameters[ZZ6]) * t100 + parameters[XY6] * t107
         + parameters[YZ6] * t108;
     const puma560_real_t t110 = parameters[XZ6] * (t58 - t104) + t109 + parameters[MX6] * t105;
-    const puma560_real_t t111 = t50 + t51;
+    const puma560_real_t t111 = t50 + t51; /* link j6: motion */
     const puma560_real_t t112 = t17 - t28;
+    /* link j5: force and moment */
     const puma560_real_t t113 = parameters[ZZ5R] * t44 - parameters[XX5R] * t45 + parameters[XY5] * t111
         - parameters[XZ5] * t112;
-    const puma560_real_t t114 = t16 * t16;
+    const puma560_real_t t114 = t16 * t16; /* link j5: motion */
+    /* link j6: what it passes on */
     const puma560_real_t t115 = parameters[YZ5] * (t114 - t95) + t113 - parameters[MY5R] * t90 + (t30 * t106
         + t47 * t110);
-    const puma560_real_t t116 = t26 + t27;
+    const puma560_real_t t116 = t26 + t27; /* link j5: motion */
     const puma560_real_t t117 = t32 + t36;
+    /* link j4: force and moment */
     const puma560_real_t t118 = parameters[ZZ4R] * t39 + parameters[XX4R] * t40 - parameters[XY4] * t116
         - parameters[XZ4] * t117;
-    const puma560_real_t t119 = t31 * t31;
+    const puma560_real_t t119 = t31 * t31; /* link j4: motion */
     const puma560_real_t t120 = t13 * t13;
+    /* link j5: what it passes on */
     const puma560_real_t t121 = parameters[YZ4] * (t119 - t120) - t118 + parameters[MY4R] * t88 + (t10 * t115
         - t14 * t96);
+    /* link j5: force and moment */
     const puma560_real_t t122 = parameters[XX5R] * t17 + parameters[ZZ5R] * t28 + parameters[YZ5] * t49
         - parameters[XZ5] * t42;
     const puma560_real_t t123 = parameters[XY5] * (t94 - t114) + t122 + (parameters[MX5] * t105
         + parameters[MY5R] * t89);
-    const puma560_real_t t124 = t123 + (t30 * t110 - t47 * t106);
+    const puma560_real_t t124 = t123 + (t30 * t110 - t47 * t106); /* link j6: what it passes on */
+    /* link j4: force and moment */
     const puma560_real_t t125 = (parameters[XX4R] - parameters[ZZ4R]) * t26 + parameters[XY4] * t41
         + parameters[YZ4] * t37;
-    const puma560_real_t t126 = t9 * t9;
+    const puma560_real_t t126 = t9 * t9; /* link j4: motion */
+    /* link j5: what it passes on */
     const puma560_real_t t127 = parameters[XZ4] * (t126 - t120) + t125 + parameters[MX4] * t88 + t124;
+    /* link j6: force and moment */
     const puma560_real_t t128 = parameters[MX6] * (t59 + t104) - parameters[MY6] * t108;
     const puma560_real_t t129 = parameters[MY6] * (t58 + t104) - parameters[MX6] * t102;
+    /* link j6: what it passes on */
     const puma560_real_t t130 = parameters[MX5] * (t114 + t95) + parameters[MY5R] * t29 + (t30 * t128
         - t47 * t129);
     const puma560_real_t t131 = parameters[MY5R] * (t94 + t95) + parameters[MX5] * t112
         + (parameters[MX6] * t101 + parameters[MY6] * t107);
+    /* link j5: what it passes on */
     const puma560_real_t t132 = parameters[MY4R] * t37 - parameters[MX4] * (t119 + t120) + (t14 * t131
         - t10 * t130);
+    /* link j6: what it passes on */
     const puma560_real_t t133 = parameters[MX5] * t111 + parameters[MY5R] * t46 - (t47 * t128 + t30 * t129);
+    /* link j5: what it passes on */
     const puma560_real_t t134 = parameters[MY4R] * (t126 + t120) - parameters[MX4] * t117 - t133;
-    const puma560_real_t t135 = t8 * t132 - t6 * t134;
+    const puma560_real_t t135 = t8 * t132 - t6 * t134; /* link j4: what it passes on */
+    /* link j3: force and moment */
     const puma560_real_t t136 = parameters[ZZ3R] * t21 - parameters[XX3R] * t23 + parameters[XY3R] * t77
         + parameters[XZ3] * t86;
+    /* link j4: what it passes on */
     const puma560_real_t t137 = parameters[MY3R] * t81 + (parameters[YZ3] * (t60 - t61) + t136) + (t6 * t121
         + t8 * t127 + PUMA560_C(-0.4318) * t135);
+    /* link j4: force and moment */
     const puma560_real_t t138 = parameters[ZZ4R] * t36 - parameters[XX4R] * t32 + parameters[YZ4] * t25
         - parameters[XZ4] * t38;
     const puma560_real_t t139 = parameters[XY4] * (t126 - t119) + t138 + (parameters[MX4] * t90
         + parameters[MY4R] * t83);
-    const puma560_real_t t140 = t139 + (t14 * t115 + t10 * t96);
+    const puma560_real_t t140 = t139 + (t14 * t115 + t10 * t96); /* link j5: what it passes on */
+    /* link j3: force and moment */
     const puma560_real_t t141 = (parameters[XX3R] - parameters[ZZ3R]) * t33 + parameters[XY3R] * t24
         - parameters[YZ3] * t20;
+    /* link j4: what it passes on */
     const puma560_real_t t142 = parameters[XZ3] * (t61 - t84) - t141 - parameters[MX3R] * t81 + (t140
         - PUMA560_C(-0.0203) * t135);
     const puma560_real_t t143 = t6 * t132 + t8 * t134;
     const puma560_real_t t144 = t143 - (parameters[MX3R] * t62 + parameters[MY3R] * t20);
+    /* link j5: what it passes on */
     const puma560_real_t t145 = parameters[MX4] * t116 + parameters[MY4R] * t41 + (t14 * t130 + t10 * t131);
+    /* link j4: what it passes on */
     const puma560_real_t t146 = parameters[MY3R] * t85 - parameters[MX3R] * t86 + t145;
-    const puma560_real_t t147 = t1 * t146 - t3 * t144;
-    const puma560_real_t t148 = dq[1] * t63;
+    const puma560_real_t t147 = t1 * t146 - t3 * t144; /* link j3: what it passes on */
+    const puma560_real_t t148 = dq[1] * t63; /* link j2: motion */
     const puma560_real_t t149 = t148 + t72;
+    /* link j2: force and moment */
     const puma560_real_t t150 = parameters[XY2] * t80 - (parameters[ZZ2R] * t148 + parameters[XX2R] * t149)
         + parameters[XZ2R] * t71;
+    /* link j3: what it passes on */
     const puma560_real_t t151 = parameters[YZ2] * (t64 - t65) + t150 + (t1 * t137 - t3 * t142
         + PUMA560_C(0.1254) * t147);
     const puma560_real_t t152 = PUMA560_C(0.1254) * (t1 * t144 + t3 * t146)
         + PUMA560_C(0.4318) * (parameters[MX3R] * t77 + parameters[MY3R] * t24 + t135);
+    /* link j2: force and moment */
     const puma560_real_t t153 = t79 * (parameters[ZZ2R] - parameters[XX2R]) - parameters[XY2] * (t148 + t149)
         + parameters[YZ2] * (ddq[1] - t70);
+    /* link j3: what it passes on */
     const puma560_real_t t154 = parameters[XZ2R] * (t65 - t78) + t153 + (t3 * t137 + t1 * t142 + t152);
     const puma560_real_t t155 = PUMA560_C(0.06944177768728742) * (t0 * t151 + t2 * t154
         - parameters[ZZ1R] * ddq[0]);
-    const puma560_real_t t156 = puma560_sign(dq[0]);
+    const puma560_real_t t156 = puma560_sign(dq[0]); /* joint j1: coulomb_friction */
     const puma560_real_t
         t157 = PUMA560_C(4.3478260869565215) * (parameters[FV1] * (PUMA560_C(-62.6111) * dq[0])
         - parameters[FC1] * t156) + t155;
     out[0] = t157;
+    /* link j4: what it passes on */
     const puma560_real_t t158 = t6 * t127 - t8 * t121 + (PUMA560_C(-0.0203) * t145
         + PUMA560_C(-0.4318) * t143);
+    /* link j3: force and moment */
     const puma560_real_t t159 = parameters[XX3R] * t18 + parameters[ZZ3R] * t19 + parameters[YZ3] * t34
         - parameters[XZ3] * t22;
     const puma560_real_t t160 = parameters[MX3R] * t87 + parameters[MY3R] * t75 + (parameters[XY3R] * (t84
         - t60) + t159);
-    const puma560_real_t t161 = t160 + t158;
+    const puma560_real_t t161 = t160 + t158; /* link j4: what it passes on */
+    /* link j2: force and moment */
     const puma560_real_t t162 = parameters[ZZ2R] * ddq[1] - parameters[XX2R] * t70 - parameters[YZ2] * t66
         - parameters[XZ2R] * t72;
     const puma560_real_t t163 = parameters[MX2R] * t73 + parameters[MY2] * t67 + (parameters[XY2] * (t78
         - t64) + t162);
-    const puma560_real_t t164 = puma560_sign(dq[1]);
+    const puma560_real_t t164 = puma560_sign(dq[1]); /* joint j2: coulomb_friction */
     const puma560_real_t
         t165 = PUMA560_C(4.3478260869565215) * (parameters[FV2] * (PUMA560_C(107.815) * dq[1])
         + parameters[FC2] * t164) + PUMA560_C(0.04032672714331514) * (t163 + (t161
         + PUMA560_C(-0.4318) * t147));
     out[1] = t165;
-    const puma560_real_t t166 = puma560_sign(dq[2]);
+    const puma560_real_t t166 = puma560_sign(dq[2]); /* joint j3: coulomb_friction */
     const puma560_real_t t167 = parameters[FV3] * (PUMA560_C(-53.7063) * dq[2]) - parameters[FC3] * t166
         + parameters[IA3] * (PUMA560_C(-53.7063) * ddq[2]);
     out[2] = PUMA560_C(4.3478260869565215) * t167 + PUMA560_C(-0.08095560645504385) * t161;
-    const puma560_real_t t168 = puma560_sign(dq[3]);
+    const puma560_real_t t168 = puma560_sign(dq[3]); /* joint j4: coulomb_friction */
     const puma560_real_t t169 = parameters[FV4] * (PUMA560_C(76.0364) * dq[3]) + parameters[FC4] * t168
         + parameters[IA4] * (PUMA560_C(76.0364) * ddq[3]);
     out[3] = PUMA560_C(14.285714285714285) * t169 + PUMA560_C(0.18787994020908783) * t140;
-    const puma560_real_t t170 = puma560_sign(dq[4]);
+    const puma560_real_t t170 = puma560_sign(dq[4]); /* joint j5: coulomb_friction */
     const puma560_real_t t171 = parameters[FV5] * (PUMA560_C(71.923) * dq[4]) + parameters[FC5] * t170
         + parameters[IA5] * (PUMA560_C(71.923) * ddq[4]);
     out[4] = PUMA560_C(14.285714285714285) * t171 + PUMA560_C(0.19862511694053758) * t124;
-    const puma560_real_t t172 = puma560_sign(dq[5]);
+    const puma560_real_t t172 = puma560_sign(dq[5]); /* joint j6: coulomb_friction */
     const puma560_real_t t173 = parameters[FV6] * (PUMA560_C(76.686) * dq[5]) + parameters[FC6] * t172
         + parameters[IA6] * (PUMA560_C(76.686) * ddq[5]);
     out[5] = PUMA560_C(14.285714285714285) * t173 + PUMA560_C(0.1862884266452062) * t92;

@@ -7,16 +7,16 @@
  * Arm puma560, description e8eb13fe224405b2.
  * SPDX-License-Identifier: 0BSD
  *
- * Operations: 2454 (1389 mul, 1065 add, 0 neg), 10 trig, 6 other.
+ * Operations: 2454 (1389 mul, 1065 add, 0 neg), 10 trig, 6 other calls (sign, select and the like).
  *
- * @param[in]   q             [6]   [rad]                joint coordinates; norm at most 10000
- * @param[in]   dq            [6]   [rad/s]              joint velocities; norm at most 100000
- * @param[in]   ddq           [6]   [rad/s^2]            joint accelerations; norm at most 1e+08
- * @param[in]   parameters    [52]                       base parameters; norm at most 1e+09
- * @param[out]  input         [6]   [A]                  inputs: motor currents, efforts where undriven
- * @param[out]  input_by_q    [36]  [(A) per (rad)]      d input / d q; 6 x 6, row-major
- * @param[out]  input_by_dq   [36]  [(A) per (rad/s)]    d input / d dq; 6 x 6, row-major
- * @param[out]  input_by_ddq  [36]  [(A) per (rad/s^2)]  d input / d ddq; 6 x 6, row-major
+ * @param[in]   q             [6]   [rad]              joint coordinates; norm at most 10000
+ * @param[in]   dq            [6]   [rad/s]            joint velocities; norm at most 100000
+ * @param[in]   ddq           [6]   [rad/s^2]          joint accelerations; norm at most 1e+08
+ * @param[in]   parameters    [52]                     base parameters; norm at most 1e+09
+ * @param[out]  input         [6]   [A]                inputs: motor currents, efforts where undriven
+ * @param[out]  input_by_q    [36]  [A per rad]        d input / d q; 6 x 6, row-major
+ * @param[out]  input_by_dq   [36]  [A per (rad/s)]    d input / d dq; 6 x 6, row-major
+ * @param[out]  input_by_ddq  [36]  [A per (rad/s^2)]  d input / d ddq; 6 x 6, row-major
  *
  * Coordinates:
  *
@@ -85,11 +85,11 @@
  */
 #include "puma560_private.h"
 
-#if PUMA560_GENERATION != 0xAC9DC6F4UL
+#if PUMA560_GENERATION != 0x0486C622UL
 #error "puma560.h and puma560_inverse_dynamics_derivatives.c are of different generations: generate the arm again"
 #endif
 
-int puma560_inverse_dynamics_derivatives(
+puma560_status_t puma560_inverse_dynamics_derivatives(
     const puma560_real_t q[PUMA560_N_JOINTS],
     const puma560_real_t dq[PUMA560_N_JOINTS],
     const puma560_real_t ddq[PUMA560_N_JOINTS],
@@ -102,7 +102,7 @@ int puma560_inverse_dynamics_derivatives(
     enum { ZZ1R = 0, XX2R, XY2, XZ2R, YZ2, ZZ2R, MX2R, MY2, XX3R, XY3R, XZ3, YZ3, ZZ3R, MX3R, MY3R, XX4R, XY4,
         XZ4, YZ4, ZZ4R, MX4, MY4R, XX5R, XY5, XZ5, YZ5, ZZ5R, MX5, MY5R, XX6R, XY6, XZ6, YZ6, ZZ6, MX6, MY6,
         FV1, FC1, FV2, FC2, FV3, FC3, IA3, FV4, FC4, IA4, FV5, FC5, IA5, FV6, FC6, IA6 };
-    int status = PUMA560_STATUS_OK;
+    puma560_status_t status = PUMA560_STATUS_OK;
 
     if (!puma560_within_joints(q, PUMA560_C(1.0e8))
         || !puma560_within_joints(dq, PUMA560_C(1.0e10))
@@ -128,215 +128,250 @@ int puma560_inverse_dynamics_derivatives(
     PUMA560_SINCOS(q[4], &t14, &t10);
     puma560_real_t t47, t30;
     PUMA560_SINCOS(q[5], &t47, &t30);
-    const puma560_real_t t4 = t0 * t1 + t2 * t3;
+    const puma560_real_t t4 = t0 * t1 + t2 * t3; /* link j3: motion */
     const puma560_real_t t5 = dq[0] * t4;
     const puma560_real_t t7 = dq[1] + dq[2];
-    const puma560_real_t t9 = t8 * t7 + t6 * t5;
-    const puma560_real_t t11 = t0 * t3 - t2 * t1;
+    const puma560_real_t t9 = t8 * t7 + t6 * t5; /* link j4: motion */
+    const puma560_real_t t11 = t0 * t3 - t2 * t1; /* link j3: motion */
     const puma560_real_t t12 = dq[0] * t11;
-    const puma560_real_t t13 = dq[3] + t12;
-    const puma560_real_t t15 = t10 * t9 - t14 * t13;
+    const puma560_real_t t13 = dq[3] + t12; /* link j4: motion */
+    const puma560_real_t t15 = t10 * t9 - t14 * t13; /* link j5: motion */
     const puma560_real_t t16 = t14 * t9 + t10 * t13;
     const puma560_real_t t17 = t15 * t16;
-    const puma560_real_t t18 = t5 * t12;
+    const puma560_real_t t18 = t5 * t12; /* link j3: motion */
     const puma560_real_t t19 = ddq[1] + ddq[2];
-    const puma560_real_t t20 = t18 + t19;
-    const puma560_real_t t21 = t7 * t12;
+    const puma560_real_t t20 = t18 + t19; /* link j4: motion */
+    const puma560_real_t t21 = t7 * t12; /* link j3: motion */
     const puma560_real_t t22 = ddq[0] * t4;
     const puma560_real_t t23 = t21 - t22;
-    const puma560_real_t t24 = t21 + t23;
+    const puma560_real_t t24 = t21 + t23; /* link j4: motion */
     const puma560_real_t t25 = t6 * t20 + t8 * t24;
     const puma560_real_t t26 = t9 * t13;
     const puma560_real_t t27 = t25 - t26;
-    const puma560_real_t t28 = ddq[4] + t27;
-    const puma560_real_t t29 = t17 + t28;
-    const puma560_real_t t31 = t6 * t7 - t8 * t5;
+    const puma560_real_t t28 = ddq[4] + t27; /* link j5: motion */
+    const puma560_real_t t29 = t17 + t28; /* link j6: motion */
+    const puma560_real_t t31 = t6 * t7 - t8 * t5; /* link j4: motion */
     const puma560_real_t t32 = t9 * t31;
-    const puma560_real_t t33 = t7 * t5;
+    const puma560_real_t t33 = t7 * t5; /* link j3: motion */
     const puma560_real_t t34 = ddq[0] * t11;
     const puma560_real_t t35 = t33 + t34;
-    const puma560_real_t t36 = ddq[3] + t35;
-    const puma560_real_t t37 = t32 - t36;
-    const puma560_real_t t38 = t8 * t20 - t6 * t24;
+    const puma560_real_t t36 = ddq[3] + t35; /* link j4: motion */
+    const puma560_real_t t37 = t32 - t36; /* link j5: motion */
+    const puma560_real_t t38 = t8 * t20 - t6 * t24; /* link j4: motion */
     const puma560_real_t t39 = t31 * t13;
     const puma560_real_t t40 = t39 + t38;
-    const puma560_real_t t41 = t39 + t40;
+    const puma560_real_t t41 = t39 + t40; /* link j5: motion */
     const puma560_real_t t42 = t14 * t37 + t10 * t41;
     const puma560_real_t t43 = dq[4] + t31;
     const puma560_real_t t44 = t16 * t43;
     const puma560_real_t t45 = t42 - t44;
-    const puma560_real_t t46 = t45 - t44;
+    const puma560_real_t t46 = t45 - t44; /* link j6: motion */
     const puma560_real_t t48 = t30 * t29 - t47 * t46;
-    const puma560_real_t t49 = t14 * t41 - t10 * t37;
+    const puma560_real_t t49 = t14 * t41 - t10 * t37; /* link j5: motion */
     const puma560_real_t t50 = t15 * t43;
     const puma560_real_t t51 = t50 + t49;
-    const puma560_real_t t52 = ddq[5] + t51;
+    const puma560_real_t t52 = ddq[5] + t51; /* link j6: motion */
     const puma560_real_t t53 = t30 * t15 + t47 * t43;
     const puma560_real_t t54 = t30 * t43 - t47 * t15;
     const puma560_real_t t55 = t53 * t54;
     const puma560_real_t t56 = t47 * t29 + t30 * t46;
+    /* link j6: force and moment */
     const puma560_real_t t57 = parameters[XX6R] * t55 - parameters[ZZ6] * t52 + parameters[YZ6] * t48
         + parameters[XZ6] * t56;
-    const puma560_real_t t58 = t53 * t53;
+    const puma560_real_t t58 = t53 * t53; /* link j6: motion */
     const puma560_real_t t59 = t54 * t54;
-    const puma560_real_t t60 = t12 * t12;
+    const puma560_real_t t60 = t12 * t12; /* link j3: motion */
     const puma560_real_t t61 = t7 * t7;
-    const puma560_real_t t62 = t61 + t60;
-    const puma560_real_t t63 = t2 * dq[0];
+    const puma560_real_t t62 = t61 + t60; /* link j4: motion */
+    const puma560_real_t t63 = t2 * dq[0]; /* link j2: motion */
     const puma560_real_t t64 = t63 * t63;
     const puma560_real_t t65 = dq[1] * dq[1];
     const puma560_real_t t66 = t2 * ddq[0];
     const puma560_real_t t67 = PUMA560_C(-9.81) * t0;
+    /* link j3: motion */
     const puma560_real_t t68 = t67 + (PUMA560_C(-0.4318) * (t65 + t64) + PUMA560_C(-0.1254) * t66);
-    const puma560_real_t t69 = t0 * dq[0];
+    const puma560_real_t t69 = t0 * dq[0]; /* link j2: motion */
     const puma560_real_t t70 = t69 * t63;
-    const puma560_real_t t71 = ddq[1] + t70;
-    const puma560_real_t t72 = t0 * ddq[0];
+    const puma560_real_t t71 = ddq[1] + t70; /* link j3: motion */
+    const puma560_real_t t72 = t0 * ddq[0]; /* link j2: motion */
     const puma560_real_t t73 = PUMA560_C(9.81) * t2;
+    /* link j3: motion */
     const puma560_real_t t74 = t73 - (PUMA560_C(0.4318) * t71 + PUMA560_C(0.1254) * t72);
     const puma560_real_t t75 = t1 * t68 - t3 * t74;
+    /* link j4: motion */
     const puma560_real_t t76 = t75 + (PUMA560_C(-0.0203) * t62 + PUMA560_C(-0.4318) * t20);
     const puma560_real_t t77 = t33 + t35;
-    const puma560_real_t t78 = t69 * t69;
-    const puma560_real_t t79 = t78 + t64;
-    const puma560_real_t t80 = dq[1] * t69;
-    const puma560_real_t t81 = t80 + (t80 - t66);
+    const puma560_real_t t78 = t69 * t69; /* link j2: motion */
+    const puma560_real_t t79 = t78 + t64; /* link j3: motion */
+    const puma560_real_t t80 = dq[1] * t69; /* link j2: motion */
+    const puma560_real_t t81 = t80 + (t80 - t66); /* link j3: motion */
     const puma560_real_t t82 = PUMA560_C(-0.1254) * t79 + PUMA560_C(-0.4318) * t81;
-    const puma560_real_t t83 = PUMA560_C(0.0203) * t77 - PUMA560_C(0.4318) * t24 - t82;
+    const puma560_real_t t83 = PUMA560_C(0.0203) * t77 - PUMA560_C(0.4318) * t24 - t82; /* link j4: motion */
     const puma560_real_t t84 = t6 * t76 + t8 * t83;
-    const puma560_real_t t85 = t5 * t5;
-    const puma560_real_t t86 = t61 + t85;
+    const puma560_real_t t85 = t5 * t5; /* link j3: motion */
+    const puma560_real_t t86 = t61 + t85; /* link j4: motion */
     const puma560_real_t t87 = t18 - t19;
-    const puma560_real_t t88 = t3 * t68 + t1 * t74;
+    const puma560_real_t t88 = t3 * t68 + t1 * t74; /* link j3: motion */
+    /* link j4: motion */
     const puma560_real_t t89 = t88 + (PUMA560_C(0.4318) * t86 + PUMA560_C(0.0203) * t87);
-    const puma560_real_t t90 = t14 * t89 - t10 * t84;
-    const puma560_real_t t91 = t8 * t76 - t6 * t83;
-    const puma560_real_t t92 = t30 * t91 - t47 * t90;
+    const puma560_real_t t90 = t14 * t89 - t10 * t84; /* link j5: motion */
+    const puma560_real_t t91 = t8 * t76 - t6 * t83; /* link j4: motion */
+    const puma560_real_t t92 = t30 * t91 - t47 * t90; /* link j6: motion */
     const puma560_real_t t93 = t30 * t90 + t47 * t91;
+    /* link j6: force and moment */
     const puma560_real_t t94 = parameters[XY6] * (t59 - t58) + t57 + (parameters[MX6] * t92
         - parameters[MY6] * t93);
+    /* link j5: force and moment */
     const puma560_real_t t95 = (parameters[XX5R] - parameters[ZZ5R]) * t50 + parameters[XY5] * t46
         - parameters[YZ5] * t29;
-    const puma560_real_t t96 = t15 * t15;
+    const puma560_real_t t96 = t15 * t15; /* link j5: motion */
     const puma560_real_t t97 = t43 * t43;
+    /* link j6: what it passes on */
     const puma560_real_t t98 = parameters[XZ5] * (t96 - t97) + t95 + parameters[MX5] * t91 + t94;
-    const puma560_real_t t99 = dq[5] + t16;
+    const puma560_real_t t99 = dq[5] + t16; /* link j6: motion */
     const puma560_real_t t100 = t54 * t99;
     const puma560_real_t t101 = t100 + t56;
     const puma560_real_t t102 = t53 * t99;
-    const puma560_real_t t103 = t48 - t102 - t102;
+    const puma560_real_t t103 = t48 - t102 - t102; /* link j6: force and moment */
     const puma560_real_t t104 = t55 + t52;
     const puma560_real_t t105 = parameters[ZZ6] * t100 + parameters[XX6R] * t101 + parameters[XY6] * t103
         - parameters[XZ6] * t104;
-    const puma560_real_t t106 = t99 * t99;
-    const puma560_real_t t107 = t14 * t84 + t10 * t89;
+    const puma560_real_t t106 = t99 * t99; /* link j6: motion */
+    const puma560_real_t t107 = t14 * t84 + t10 * t89; /* link j5: motion */
+    /* link j6: force and moment */
     const puma560_real_t t108 = parameters[YZ6] * (t106 - t59) + t105 + parameters[MY6] * t107;
     const puma560_real_t t109 = t100 + t101;
     const puma560_real_t t110 = t52 - t55;
     const puma560_real_t t111 = (parameters[XX6R] - parameters[ZZ6]) * t102 + parameters[XY6] * t109
         - parameters[YZ6] * t110;
     const puma560_real_t t112 = parameters[XZ6] * (t58 - t106) + t111 - parameters[MX6] * t107;
-    const puma560_real_t t113 = t50 + t51;
+    const puma560_real_t t113 = t50 + t51; /* link j6: motion */
     const puma560_real_t t114 = t17 - t28;
+    /* link j5: force and moment */
     const puma560_real_t t115 = parameters[ZZ5R] * t44 - parameters[XX5R] * t45 + parameters[XY5] * t113
         - parameters[XZ5] * t114;
-    const puma560_real_t t116 = t16 * t16;
+    const puma560_real_t t116 = t16 * t16; /* link j5: motion */
+    /* link j6: what it passes on */
     const puma560_real_t t117 = parameters[YZ5] * (t116 - t97) + t115 + parameters[MY5R] * t91 + (t47 * t112
         - t30 * t108);
-    const puma560_real_t t118 = t26 - t27;
+    const puma560_real_t t118 = t26 - t27; /* link j5: motion */
     const puma560_real_t t119 = t32 + t36;
+    /* link j4: force and moment */
     const puma560_real_t t120 = parameters[ZZ4R] * t39 + parameters[XX4R] * t40 - parameters[XY4] * t118
         - parameters[XZ4] * t119;
-    const puma560_real_t t121 = t31 * t31;
+    const puma560_real_t t121 = t31 * t31; /* link j4: motion */
     const puma560_real_t t122 = t13 * t13;
+    /* link j5: what it passes on */
     const puma560_real_t t123 = parameters[YZ4] * (t122 - t121) + t120 + parameters[MY4R] * t89 - (t10 * t117
         + t14 * t98);
+    /* link j5: force and moment */
     const puma560_real_t t124 = parameters[XX5R] * t17 + parameters[ZZ5R] * t28 + parameters[YZ5] * t49
         - parameters[XZ5] * t42;
     const puma560_real_t t125 = parameters[XY5] * (t96 - t116) + t124 + (parameters[MY5R] * t90
         - parameters[MX5] * t107);
-    const puma560_real_t t126 = t125 + (t47 * t108 + t30 * t112);
+    const puma560_real_t t126 = t125 + (t47 * t108 + t30 * t112); /* link j6: what it passes on */
+    /* link j4: force and moment */
     const puma560_real_t t127 = (parameters[XX4R] - parameters[ZZ4R]) * t26 + parameters[XY4] * t41
         + parameters[YZ4] * t37;
-    const puma560_real_t t128 = t9 * t9;
+    const puma560_real_t t128 = t9 * t9; /* link j4: motion */
+    /* link j5: what it passes on */
     const puma560_real_t t129 = parameters[XZ4] * (t128 - t122) + t127 - parameters[MX4] * t89 + t126;
+    /* link j6: force and moment */
     const puma560_real_t t130 = parameters[MX6] * (t59 + t106) + parameters[MY6] * t110;
     const puma560_real_t t131 = parameters[MX6] * t104 - parameters[MY6] * (t58 + t106);
+    /* link j6: what it passes on */
     const puma560_real_t t132 = parameters[MX5] * (t116 + t97) + parameters[MY5R] * t29 + (t30 * t130
         + t47 * t131);
     const puma560_real_t t133 = parameters[MY5R] * (t96 + t97) + parameters[MX5] * t114
         + (parameters[MY6] * t109 - parameters[MX6] * t103);
+    /* link j5: what it passes on */
     const puma560_real_t t134 = parameters[MX4] * (t121 + t122) - parameters[MY4R] * t37 + (t10 * t132
         - t14 * t133);
+    /* link j6: what it passes on */
     const puma560_real_t t135 = parameters[MX5] * t113 + parameters[MY5R] * t46 - (t47 * t130 - t30 * t131);
+    /* link j5: what it passes on */
     const puma560_real_t t136 = parameters[MY4R] * (t128 + t122) - parameters[MX4] * t119 - t135;
-    const puma560_real_t t137 = t8 * t134 + t6 * t136;
+    const puma560_real_t t137 = t8 * t134 + t6 * t136; /* link j4: what it passes on */
+    /* link j3: force and moment */
     const puma560_real_t t138 = parameters[ZZ3R] * t21 + parameters[XX3R] * t23 + parameters[XY3R] * t77
         - parameters[XZ3] * t87;
+    /* link j4: what it passes on */
     const puma560_real_t t139 = parameters[YZ3] * (t61 - t60) - t138 - parameters[MY3R] * t82 - (t8 * t129
         - t6 * t123 + PUMA560_C(0.4318) * t137);
+    /* link j4: force and moment */
     const puma560_real_t t140 = parameters[XX4R] * t32 - parameters[ZZ4R] * t36 + parameters[YZ4] * t25
         + parameters[XZ4] * t38;
     const puma560_real_t t141 = parameters[XY4] * (t121 - t128) + t140 + (parameters[MX4] * t91
         + parameters[MY4R] * t84);
-    const puma560_real_t t142 = t141 + (t10 * t98 - t14 * t117);
+    const puma560_real_t t142 = t141 + (t10 * t98 - t14 * t117); /* link j5: what it passes on */
+    /* link j3: force and moment */
     const puma560_real_t t143 = (parameters[XX3R] - parameters[ZZ3R]) * t33 - parameters[XY3R] * t24
         - parameters[YZ3] * t20;
+    /* link j4: what it passes on */
     const puma560_real_t t144 = parameters[MX3R] * t82 + (parameters[XZ3] * (t85 - t61) + t143) + (t142
         + PUMA560_C(0.0203) * t137);
     const puma560_real_t t145 = t6 * t134 - t8 * t136;
     const puma560_real_t t146 = parameters[MX3R] * t62 + parameters[MY3R] * t20 + t145;
+    /* link j5: what it passes on */
     const puma560_real_t t147 = parameters[MX4] * t118 + parameters[MY4R] * t41 + (t14 * t132 + t10 * t133);
+    /* link j4: what it passes on */
     const puma560_real_t t148 = parameters[MY3R] * t86 + parameters[MX3R] * t87 + t147;
-    const puma560_real_t t149 = t3 * t146 + t1 * t148;
-    const puma560_real_t t150 = dq[1] * t63;
+    const puma560_real_t t149 = t3 * t146 + t1 * t148; /* link j3: what it passes on */
+    const puma560_real_t t150 = dq[1] * t63; /* link j2: motion */
     const puma560_real_t t151 = t150 + t72;
+    /* link j2: force and moment */
     const puma560_real_t t152 = parameters[XY2] * t81 - (parameters[ZZ2R] * t150 + parameters[XX2R] * t151)
         + parameters[XZ2R] * t71;
+    /* link j3: what it passes on */
     const puma560_real_t t153 = parameters[YZ2] * (t64 - t65) + t152 + (t3 * t144 - t1 * t139
         + PUMA560_C(0.1254) * t149);
     const puma560_real_t t154 = PUMA560_C(0.1254) * (t1 * t146 - t3 * t148)
         + PUMA560_C(0.4318) * (parameters[MY3R] * t24 - parameters[MX3R] * t77 + t137);
+    /* link j2: force and moment */
     const puma560_real_t t155 = t80 * (parameters[XX2R] - parameters[ZZ2R]) + parameters[XY2] * (t150 + t151)
         + parameters[YZ2] * (t70 - ddq[1]);
+    /* link j3: what it passes on */
     const puma560_real_t t156 = parameters[XZ2R] * (t78 - t65) + t155 + (t3 * t139 + t1 * t144 + t154);
     const puma560_real_t t157 = PUMA560_C(0.06944177768728742) * (t0 * t153 - t2 * t156
         - parameters[ZZ1R] * ddq[0]);
-    const puma560_real_t t158 = puma560_sign(dq[0]);
+    const puma560_real_t t158 = puma560_sign(dq[0]); /* joint j1: coulomb_friction */
     const puma560_real_t
         t159 = PUMA560_C(4.3478260869565215) * (parameters[FV1] * (PUMA560_C(-62.6111) * dq[0])
         - parameters[FC1] * t158) + t157;
     input[0] = t159;
+    /* link j4: what it passes on */
     const puma560_real_t t160 = t8 * t123 + t6 * t129 + (PUMA560_C(-0.0203) * t147
         + PUMA560_C(0.4318) * t145);
+    /* link j3: force and moment */
     const puma560_real_t t161 = parameters[XX3R] * t18 + parameters[ZZ3R] * t19 + parameters[YZ3] * t34
         - parameters[XZ3] * t22;
     const puma560_real_t t162 = parameters[XY3R] * (t85 - t60) + t161 - (parameters[MX3R] * t88
         + parameters[MY3R] * t75);
-    const puma560_real_t t163 = t162 + t160;
+    const puma560_real_t t163 = t162 + t160; /* link j4: what it passes on */
+    /* link j2: force and moment */
     const puma560_real_t t164 = parameters[ZZ2R] * ddq[1] - parameters[XX2R] * t70 - parameters[YZ2] * t66
         - parameters[XZ2R] * t72;
     const puma560_real_t t165 = parameters[XY2] * (t78 - t64) + t164 - (parameters[MX2R] * t73
         + parameters[MY2] * t67);
-    const puma560_real_t t166 = puma560_sign(dq[1]);
+    const puma560_real_t t166 = puma560_sign(dq[1]); /* joint j2: coulomb_friction */
     const puma560_real_t
         t167 = PUMA560_C(4.3478260869565215) * (parameters[FV2] * (PUMA560_C(107.815) * dq[1])
         + parameters[FC2] * t166) + PUMA560_C(0.04032672714331514) * (t165 + (t163
         + PUMA560_C(-0.4318) * t149));
     input[1] = t167;
-    const puma560_real_t t168 = puma560_sign(dq[2]);
+    const puma560_real_t t168 = puma560_sign(dq[2]); /* joint j3: coulomb_friction */
     const puma560_real_t t169 = parameters[FV3] * (PUMA560_C(-53.7063) * dq[2]) - parameters[FC3] * t168
         + parameters[IA3] * (PUMA560_C(-53.7063) * ddq[2]);
     input[2] = PUMA560_C(4.3478260869565215) * t169 + PUMA560_C(-0.08095560645504385) * t163;
-    const puma560_real_t t170 = puma560_sign(dq[3]);
+    const puma560_real_t t170 = puma560_sign(dq[3]); /* joint j4: coulomb_friction */
     const puma560_real_t t171 = parameters[FV4] * (PUMA560_C(76.0364) * dq[3]) + parameters[FC4] * t170
         + parameters[IA4] * (PUMA560_C(76.0364) * ddq[3]);
     input[3] = PUMA560_C(14.285714285714285) * t171 + PUMA560_C(-0.18787994020908783) * t142;
-    const puma560_real_t t172 = puma560_sign(dq[4]);
+    const puma560_real_t t172 = puma560_sign(dq[4]); /* joint j5: coulomb_friction */
     const puma560_real_t t173 = parameters[FV5] * (PUMA560_C(71.923) * dq[4]) + parameters[FC5] * t172
         + parameters[IA5] * (PUMA560_C(71.923) * ddq[4]);
     input[4] = PUMA560_C(14.285714285714285) * t173 + PUMA560_C(0.19862511694053758) * t126;
-    const puma560_real_t t174 = puma560_sign(dq[5]);
+    const puma560_real_t t174 = puma560_sign(dq[5]); /* joint j6: coulomb_friction */
     const puma560_real_t t175 = parameters[FV6] * (PUMA560_C(76.686) * dq[5]) + parameters[FC6] * t174
         + parameters[IA6] * (PUMA560_C(76.686) * ddq[5]);
     input[5] = PUMA560_C(14.285714285714285) * t175 + PUMA560_C(-0.1862884266452062) * t94;
@@ -349,6 +384,7 @@ int puma560_inverse_dynamics_derivatives(
     const puma560_real_t t182 = t181 - parameters[XX6R];
     const puma560_real_t t183 = t99 * t182 - parameters[XZ6] * t53;
     const puma560_real_t t184 = parameters[YZ6] * t54 - t99 * t181;
+    /* link j6: inertia, momentum beyond */
     const puma560_real_t t185 = t47 * (t183 + t184) - t30 * (t178 + t180);
     const puma560_real_t t186 = t30 * t185;
     const puma560_real_t t187 = parameters[XZ5] * t16;
@@ -366,91 +402,108 @@ int puma560_inverse_dynamics_derivatives(
     const puma560_real_t t199 = t53 * t181 + parameters[XY6] * t54;
     const puma560_real_t t200 = parameters[XX5R] - t196;
     const puma560_real_t t201 = t43 * t200 + parameters[XZ5] * t15 - (t30 * t198 + t47 * t199);
+    /* link j5: inertia, momentum beyond */
     const puma560_real_t t202 = t10 * (t192 - t189) + t14 * (t197 + t201);
     const puma560_real_t t203 = t10 * t202;
     const puma560_real_t t204 = parameters[XZ4] * t31;
     const puma560_real_t t205 = parameters[XY4] * t13;
     const puma560_real_t t206 = t204 + t205 - (t192 - t203);
-    const puma560_real_t t207 = t187 + t191 + (t178 + t186);
+    const puma560_real_t t207 = t187 + t191 + (t178 + t186); /* link j6: inertia, momentum beyond */
     const puma560_real_t t208 = parameters[YZ4] * t9;
-    const puma560_real_t t209 = t207 - (t205 + t208);
-    const puma560_real_t t210 = t47 * t185;
+    const puma560_real_t t209 = t207 - (t205 + t208); /* link j5: inertia, momentum beyond */
+    const puma560_real_t t210 = t47 * t185; /* link j6: inertia, momentum beyond */
     const puma560_real_t t211 = parameters[ZZ5R] - t196;
     const puma560_real_t t212 = t16 * t211 - parameters[YZ5] * t43 + (t184 - t210);
     const puma560_real_t t213 = parameters[XZ5] * t43 + t15 * t211 + (t47 * t198 - t30 * t199);
     const puma560_real_t t214 = PUMA560_C(0.5) * (parameters[XX4R] + parameters[ZZ4R]);
+    /* link j5: inertia, momentum beyond */
     const puma560_real_t t215 = parameters[YZ4] * t31 - t13 * t214 + (t10 * t212 - t14 * t213);
+    /* link j6: inertia, momentum beyond */
     const puma560_real_t t216 = t183 - t210 - (parameters[XY5] * t15 + t16 * t200);
     const puma560_real_t t217 = t15 * t196 - parameters[XY5] * t16 + (t30 * t195 - t47 * t194);
     const puma560_real_t t218 = parameters[XX4R] - t214;
+    /* link j5: inertia, momentum beyond */
     const puma560_real_t t219 = t13 * t218 + parameters[XZ4] * t9 + (t14 * t217 - t10 * t216);
+    /* link j4: inertia, momentum beyond */
     const puma560_real_t t220 = t6 * (t206 - t209) + t8 * (t219 - t215);
     const puma560_real_t t221 = t6 * t220;
     const puma560_real_t t222 = parameters[MY6] * t99;
     const puma560_real_t t223 = parameters[MX6] * t99;
+    /* link j6: inertia, momentum beyond */
     const puma560_real_t t224 = parameters[MY5R] * t43 + (t30 * t222 + t47 * t223);
     const puma560_real_t t225 = parameters[MY6] * t53 - parameters[MX6] * t54;
     const puma560_real_t t226 = parameters[MX5] * t43 - t225;
+    /* link j5: inertia, momentum beyond */
     const puma560_real_t t227 = parameters[MY4R] * t13 + (t10 * t224 + t14 * t226);
+    /* link j6: inertia, momentum beyond */
     const puma560_real_t t228 = parameters[MY5R] * t15 + parameters[MX5] * t16 - (t47 * t222 - t30 * t223);
-    const puma560_real_t t229 = parameters[MX4] * t13 + t228;
-    const puma560_real_t t230 = t6 * t227 + t8 * t229;
+    const puma560_real_t t229 = parameters[MX4] * t13 + t228; /* link j5: inertia, momentum beyond */
+    const puma560_real_t t230 = t6 * t227 + t8 * t229; /* link j4: inertia, momentum beyond */
     const puma560_real_t t231 = PUMA560_C(-0.0203) * t230;
+    /* link j6: column of the mass matrix */
     const puma560_real_t t232 = t30 * parameters[MY6] + t47 * parameters[MX6];
-    const puma560_real_t t233 = parameters[MY4R] + t232;
+    const puma560_real_t t233 = parameters[MY4R] + t232; /* link j5: inertia of it and all beyond */
+    /* link j6: column of the mass matrix */
     const puma560_real_t t234 = t30 * parameters[MX6] - t47 * parameters[MY6];
-    const puma560_real_t t235 = parameters[MX5] + t234;
-    const puma560_real_t t236 = t10 * t235 - t14 * parameters[MY5R];
-    const puma560_real_t t237 = parameters[MX4] + t236;
-    const puma560_real_t t238 = t6 * t237 - t8 * t233;
-    const puma560_real_t t239 = PUMA560_C(0.4318) * t7;
-    const puma560_real_t t240 = t238 * t239;
+    const puma560_real_t t235 = parameters[MX5] + t234; /* link j6: inertia of it and all beyond */
+    const puma560_real_t t236 = t10 * t235 - t14 * parameters[MY5R]; /* link j5: column of the mass matrix */
+    const puma560_real_t t237 = parameters[MX4] + t236; /* link j5: inertia of it and all beyond */
+    const puma560_real_t t238 = t6 * t237 - t8 * t233; /* link j4: column of the mass matrix */
+    const puma560_real_t t239 = PUMA560_C(0.4318) * t7; /* link j4: velocity of its origin */
+    const puma560_real_t t240 = t238 * t239; /* link j4: inertia, momentum beyond */
+    /* link j5: inertia, momentum beyond */
     const puma560_real_t t241 = parameters[MY4R] * t9 - parameters[MX4] * t31 + (t14 * t224 - t10 * t226);
-    const puma560_real_t t242 = PUMA560_C(0.4318) * t241;
-    const puma560_real_t t243 = t6 * t233 + t8 * t237;
+    const puma560_real_t t242 = PUMA560_C(0.4318) * t241; /* link j4: inertia, momentum beyond */
+    const puma560_real_t t243 = t6 * t233 + t8 * t237; /* link j4: column of the mass matrix */
     const puma560_real_t t244 = PUMA560_C(0.4318) * t5 + PUMA560_C(0.0203) * t12;
-    const puma560_real_t t245 = t243 * t244;
-    const puma560_real_t t246 = t10 * parameters[MY5R] + t14 * t235;
-    const puma560_real_t t247 = PUMA560_C(0.0203) * t7;
-    const puma560_real_t t248 = t246 * t247;
+    const puma560_real_t t245 = t243 * t244; /* link j4: inertia, momentum beyond */
+    const puma560_real_t t246 = t10 * parameters[MY5R] + t14 * t235; /* link j5: column of the mass matrix */
+    const puma560_real_t t247 = PUMA560_C(0.0203) * t7; /* link j4: velocity of its origin */
+    const puma560_real_t t248 = t246 * t247; /* link j4: inertia, momentum beyond */
     const puma560_real_t t249 = t242 - t231 - (t248 - t240 + t245);
     const puma560_real_t t250 = parameters[XZ3] * t12;
     const puma560_real_t t251 = parameters[XY3R] * t7;
     const puma560_real_t t252 = t251 - t250 + (t249 + (t209 + t221 + (t231 - t240)));
-    const puma560_real_t t253 = t204 - t208 + (t189 + t203);
+    const puma560_real_t t253 = t204 - t208 + (t189 + t203); /* link j5: inertia, momentum beyond */
     const puma560_real_t t254 = parameters[YZ3] * t5;
+    /* link j4: inertia, momentum beyond */
     const puma560_real_t t255 = t251 + t254 - (t249 - (t253 + (t242 - t248)));
-    const puma560_real_t t256 = t14 * t202;
+    const puma560_real_t t256 = t14 * t202; /* link j5: inertia, momentum beyond */
     const puma560_real_t t257 = t214 - parameters[ZZ4R];
     const puma560_real_t t258 = parameters[YZ4] * t13 - t31 * t257 - (t197 - t256);
     const puma560_real_t t259 = t9 * t257 - parameters[XZ4] * t13 + (t14 * t216 + t10 * t217);
+    /* link j4: inertia, momentum beyond */
     const puma560_real_t t260 = t8 * t259 - t6 * t258 + (PUMA560_C(0.4318) * t230 + t246 * t239);
     const puma560_real_t t261 = PUMA560_C(0.5) * (parameters[XX3R] + parameters[ZZ3R]);
     const puma560_real_t t262 = parameters[YZ3] * t12 + t7 * t261 + t260;
+    /* link j5: inertia, momentum beyond */
     const puma560_real_t t263 = parameters[XY4] * t9 - t31 * t218 + (t256 - t201);
     const puma560_real_t t264 = t9 * t214 + parameters[XY4] * t31 - (t14 * t212 + t10 * t213);
+    /* link j4: inertia, momentum beyond */
     const puma560_real_t t265 = t6 * t263 + t8 * t264 - (PUMA560_C(0.0203) * t241 - t238 * t247);
     const puma560_real_t t266 = parameters[XX3R] - t261;
     const puma560_real_t t267 = t7 * t266 + parameters[XZ3] * t5 - t265;
+    /* link j3: inertia, momentum beyond */
     const puma560_real_t t268 = t1 * (t252 + t255) + t3 * (t262 + t267);
     const puma560_real_t t269 = t1 * t268;
-    const puma560_real_t t270 = parameters[MY3R] * t7 + t230;
+    const puma560_real_t t270 = parameters[MY3R] * t7 + t230; /* link j4: inertia, momentum beyond */
     const puma560_real_t t271 = t241 - parameters[MX3R] * t7;
-    const puma560_real_t t272 = t1 * t270 - t3 * t271;
+    const puma560_real_t t272 = t1 * t270 - t3 * t271; /* link j3: inertia, momentum beyond */
     const puma560_real_t t273 = PUMA560_C(0.4318) * t272;
-    const puma560_real_t t274 = parameters[MX3R] + t238;
+    const puma560_real_t t274 = parameters[MX3R] + t238; /* link j4: inertia of it and all beyond */
     const puma560_real_t t275 = parameters[MY3R] + t246;
-    const puma560_real_t t276 = t1 * t274 - t3 * t275;
-    const puma560_real_t t277 = PUMA560_C(-0.1254) * t63;
-    const puma560_real_t t278 = t276 * t277;
-    const puma560_real_t t279 = t8 * t227 - t6 * t229;
+    const puma560_real_t t276 = t1 * t274 - t3 * t275; /* link j3: column of the mass matrix */
+    const puma560_real_t t277 = PUMA560_C(-0.1254) * t63; /* link j3: velocity of its origin */
+    const puma560_real_t t278 = t276 * t277; /* link j3: inertia, momentum beyond */
+    const puma560_real_t t279 = t8 * t227 - t6 * t229; /* link j4: inertia, momentum beyond */
     const puma560_real_t t280 = t279 - (parameters[MY3R] * t5 + parameters[MX3R] * t12);
-    const puma560_real_t t281 = PUMA560_C(-0.1254) * t280;
-    const puma560_real_t t282 = t1 * t275 + t3 * t274;
+    const puma560_real_t t281 = PUMA560_C(-0.1254) * t280; /* link j3: inertia, momentum beyond */
+    const puma560_real_t t282 = t1 * t275 + t3 * t274; /* link j3: column of the mass matrix */
+    /* link j3: velocity of its origin */
     const puma560_real_t t283 = PUMA560_C(-0.4318) * dq[1] + PUMA560_C(-0.1254) * t69;
-    const puma560_real_t t284 = t282 * t283;
-    const puma560_real_t t285 = PUMA560_C(0.4318) * t63;
-    const puma560_real_t t286 = t243 * t285;
+    const puma560_real_t t284 = t282 * t283; /* link j3: inertia, momentum beyond */
+    const puma560_real_t t285 = PUMA560_C(0.4318) * t63; /* link j3: velocity of its origin */
+    const puma560_real_t t286 = t243 * t285; /* link j3: inertia, momentum beyond */
     const puma560_real_t t287 = t273 + t281 + (t284 - t278 + t286);
     const puma560_real_t t288 = parameters[XZ2R] * t63;
     const puma560_real_t t289 = parameters[XY2] * dq[1];
@@ -464,99 +517,121 @@ int puma560_inverse_dynamics_derivatives(
     const puma560_real_t t297 = t294 - parameters[XX2R];
     const puma560_real_t t298 = dq[1] * t297 - parameters[XZ2R] * t69 + (t293 - t267
         + (PUMA560_C(-0.4318) * t296 - t276 * t283));
+    /* link j2: inertia, momentum beyond */
     const puma560_real_t t299 = t2 * (t2 * (t292 - t290) + t0 * (t295 + t298));
     input_by_dq[0] = PUMA560_C(-272.2221739130435) * parameters[FV1] + PUMA560_C(0.13888355537457484) * (t290
         + t299);
-    const puma560_real_t t300 = t8 * t220;
+    const puma560_real_t t300 = t8 * t220; /* link j4: inertia, momentum beyond */
     const puma560_real_t t301 = parameters[XY3R] * t5 + t12 * t266 + (t219 - t300 + (PUMA560_C(0.0203) * t279
         - t238 * t244));
     const puma560_real_t t302 = t8 * t258 + t6 * t259 + (PUMA560_C(-0.4318) * t279 + t246 * t244);
     const puma560_real_t t303 = t5 * t261 - parameters[XY3R] * t12 + t302;
+    /* link j3: inertia, momentum beyond */
     const puma560_real_t t304 = t1 * t301 + t3 * t303 + (PUMA560_C(0.4318) * t280 + t276 * t285);
+    /* link j2: derivatives */
     const puma560_real_t t305 = PUMA560_C(2.0) * (parameters[XY2] * t69 + t63 * t297 + t304);
+    /* link j3: inertia, momentum beyond */
     const puma560_real_t t306 = parameters[XY2] * t63 + t69 * t294 - (t3 * t301 - t1 * t303 + t282 * t285);
-    const puma560_real_t t307 = PUMA560_C(2.0) * t306;
+    const puma560_real_t t307 = PUMA560_C(2.0) * t306; /* link j2: derivatives */
     input_by_dq[6] = PUMA560_C(0.04032672714331514) * (t0 * t305 - t2 * t307);
-    const puma560_real_t t308 = PUMA560_C(2.0) * t301;
+    const puma560_real_t t308 = PUMA560_C(2.0) * t301; /* link j3: derivatives */
     const puma560_real_t t309 = PUMA560_C(-2.0) * t303;
-    const puma560_real_t t310 = PUMA560_C(-0.8636) * t63;
-    const puma560_real_t t311 = t3 * t309 - t1 * t308 + t276 * t310;
+    const puma560_real_t t310 = PUMA560_C(-0.8636) * t63; /* link j6: derivatives */
+    const puma560_real_t t311 = t3 * t309 - t1 * t308 + t276 * t310; /* link j3: derivatives */
     const puma560_real_t t312 = t3 * t308 + t1 * t309 - t282 * t310;
     input_by_dq[12] = PUMA560_C(0.08095560645504385) * (t0 * t311 - t2 * t312);
-    const puma560_real_t t313 = PUMA560_C(2.0) * t263;
+    const puma560_real_t t313 = PUMA560_C(2.0) * t263; /* link j4: derivatives */
     const puma560_real_t t314 = PUMA560_C(2.0) * t264;
-    const puma560_real_t t315 = PUMA560_C(0.0406) * t7;
-    const puma560_real_t t316 = t6 * t313 + t8 * t314 + t238 * t315;
+    const puma560_real_t t315 = PUMA560_C(0.0406) * t7; /* link j6: derivatives */
+    const puma560_real_t t316 = t6 * t313 + t8 * t314 + t238 * t315; /* link j4: derivatives */
     const puma560_real_t t317 = PUMA560_C(2.0) * t253;
-    const puma560_real_t t318 = PUMA560_C(2.0) * t244;
+    const puma560_real_t t318 = PUMA560_C(2.0) * t244; /* link j6: derivatives */
     const puma560_real_t t319 = PUMA560_C(0.8636) * t7;
-    const puma560_real_t t320 = t317 + (t243 * t318 - t238 * t319);
-    const puma560_real_t t321 = PUMA560_C(2.0) * t283;
-    const puma560_real_t t322 = t3 * t243;
+    const puma560_real_t t320 = t317 + (t243 * t318 - t238 * t319); /* link j4: derivatives */
+    const puma560_real_t t321 = PUMA560_C(2.0) * t283; /* link j6: derivatives */
+    const puma560_real_t t322 = t3 * t243; /* link j4: column of the mass matrix */
+    /* link j4: derivatives */
     const puma560_real_t t323 = t1 * t316 + t3 * t320 + (t322 * t310 - t238 * t321);
-    const puma560_real_t t324 = t1 * t243;
-    const puma560_real_t t325 = PUMA560_C(0.2508) * t63;
+    const puma560_real_t t324 = t1 * t243; /* link j4: column of the mass matrix */
+    const puma560_real_t t325 = PUMA560_C(0.2508) * t63; /* link j6: derivatives */
+    /* link j4: derivatives */
     const puma560_real_t t326 = t3 * t316 - t1 * t320 + (t238 * t325 - t324 * t310);
     input_by_dq[18] = PUMA560_C(0.18787994020908783) * (t0 * t323 + t2 * t326);
-    const puma560_real_t t327 = PUMA560_C(2.0) * t216;
+    const puma560_real_t t327 = PUMA560_C(2.0) * t216; /* link j5: derivatives */
     const puma560_real_t t328 = PUMA560_C(2.0) * t217;
     const puma560_real_t t329 = t14 * t328 - t10 * t327;
     const puma560_real_t t330 = PUMA560_C(-2.0) * t207;
-    const puma560_real_t t331 = t8 * t246;
+    const puma560_real_t t331 = t8 * t246; /* link j5: column of the mass matrix */
+    /* link j5: derivatives */
     const puma560_real_t t332 = t6 * t329 - t8 * t330 - (t331 * t315 + t236 * t318);
     const puma560_real_t t333 = t14 * t327 + t10 * t328;
-    const puma560_real_t t334 = t6 * t246;
-    const puma560_real_t t335 = t333 + (t334 * t318 + t331 * t319);
-    const puma560_real_t t336 = t1 * t236 - t3 * t334;
+    const puma560_real_t t334 = t6 * t246; /* link j5: column of the mass matrix */
+    const puma560_real_t t335 = t333 + (t334 * t318 + t331 * t319); /* link j5: derivatives */
+    const puma560_real_t t336 = t1 * t236 - t3 * t334; /* link j5: column of the mass matrix */
+    /* link j5: derivatives */
     const puma560_real_t t337 = t1 * t332 + t3 * t335 + (t331 * t321 - t336 * t310);
-    const puma560_real_t t338 = t1 * t334 + t3 * t236;
+    const puma560_real_t t338 = t1 * t334 + t3 * t236; /* link j5: column of the mass matrix */
+    /* link j5: derivatives */
     const puma560_real_t t339 = t3 * t332 - t1 * t335 - (t338 * t310 + t331 * t325);
     input_by_dq[24] = PUMA560_C(0.19862511694053758) * (t0 * t337 + t2 * t339);
-    const puma560_real_t t340 = PUMA560_C(-2.0) * t198;
+    const puma560_real_t t340 = PUMA560_C(-2.0) * t198; /* link j6: derivatives */
     const puma560_real_t t341 = PUMA560_C(-2.0) * t199;
     const puma560_real_t t342 = t30 * t340 + t47 * t341;
     const puma560_real_t t343 = PUMA560_C(2.0) * t190;
     const puma560_real_t t344 = t14 * t343 - t10 * t342;
     const puma560_real_t t345 = t30 * t341 - t47 * t340;
-    const puma560_real_t t346 = t10 * t232;
+    const puma560_real_t t346 = t10 * t232; /* link j6: column of the mass matrix */
     const puma560_real_t t347 = t6 * t234 - t8 * t346;
     const puma560_real_t t348 = t14 * t232;
+    /* link j6: derivatives */
     const puma560_real_t t349 = t6 * t344 - t8 * t345 + (t347 * t315 + t348 * t318);
     const puma560_real_t t350 = t14 * t342 + t10 * t343;
-    const puma560_real_t t351 = t6 * t346 + t8 * t234;
-    const puma560_real_t t352 = t350 + (t351 * t318 - t347 * t319);
-    const puma560_real_t t353 = t3 * t351 + t1 * t348;
+    const puma560_real_t t351 = t6 * t346 + t8 * t234; /* link j6: column of the mass matrix */
+    const puma560_real_t t352 = t350 + (t351 * t318 - t347 * t319); /* link j6: derivatives */
+    const puma560_real_t t353 = t3 * t351 + t1 * t348; /* link j6: column of the mass matrix */
+    /* link j6: derivatives */
     const puma560_real_t t354 = t1 * t349 + t3 * t352 + (t353 * t310 - t347 * t321);
-    const puma560_real_t t355 = t1 * t351 - t3 * t348;
+    const puma560_real_t t355 = t1 * t351 - t3 * t348; /* link j6: column of the mass matrix */
+    /* link j6: derivatives */
     const puma560_real_t t356 = t3 * t349 - t1 * t352 + (t347 * t325 - t355 * t310);
     input_by_dq[30] = PUMA560_C(0.1862884266452062) * (t0 * t354 + t2 * t356);
+    /* link j6: inertia of it and all beyond */
     const puma560_real_t t357 = parameters[XY6] * (PUMA560_C(2.0) * t47) - t30 * parameters[XX6R];
     const puma560_real_t t358 = t30 * t357;
     const puma560_real_t t359 = parameters[XX5R] - t358;
+    /* link j6: column of the mass matrix */
     const puma560_real_t t360 = t30 * parameters[XZ6] - t47 * parameters[YZ6];
-    const puma560_real_t t361 = parameters[XY5] + t360;
+    const puma560_real_t t361 = parameters[XY5] + t360; /* link j6: inertia of it and all beyond */
+    /* link j5: inertia of it and all beyond */
     const puma560_real_t t362 = t10 * (parameters[ZZ6] - t359) + t361 * (PUMA560_C(2.0) * t14);
     const puma560_real_t t363 = t10 * t362;
     const puma560_real_t t364 = parameters[ZZ4R] + (t359 + t363);
-    const puma560_real_t t365 = PUMA560_C(0.0406) * t238;
+    const puma560_real_t t365 = PUMA560_C(0.0406) * t238; /* link j4: inertia of it and all beyond */
     const puma560_real_t t366 = t364 + t365;
+    /* link j5: inertia of it and all beyond */
     const puma560_real_t t367 = parameters[XX4R] + (parameters[ZZ6] - t363);
+    /* link j6: inertia of it and all beyond */
     const puma560_real_t t368 = parameters[ZZ5R] + (parameters[XX6R] + t358);
     const puma560_real_t t369 = parameters[XZ5] - (parameters[XY6] - t47 * t357);
+    /* link j6: column of the mass matrix */
     const puma560_real_t t370 = t47 * parameters[XZ6] + t30 * parameters[YZ6];
-    const puma560_real_t t371 = parameters[YZ5] - t370;
-    const puma560_real_t t372 = t14 * t371 - t10 * t369;
-    const puma560_real_t t373 = parameters[XY4] + t372;
+    const puma560_real_t t371 = parameters[YZ5] - t370; /* link j6: inertia of it and all beyond */
+    const puma560_real_t t372 = t14 * t371 - t10 * t369; /* link j5: column of the mass matrix */
+    const puma560_real_t t373 = parameters[XY4] + t372; /* link j5: inertia of it and all beyond */
+    /* link j4: inertia of it and all beyond */
     const puma560_real_t t374 = t6 * (t368 - t367) + t373 * (PUMA560_C(2.0) * t8);
     const puma560_real_t t375 = t6 * t374;
     const puma560_real_t t376 = PUMA560_C(0.8636) * t246;
     const puma560_real_t t377 = parameters[XX3R] + (t368 - t375 + t376);
+    /* link j5: inertia of it and all beyond */
     const puma560_real_t t378 = t14 * t362 - t361 - parameters[XZ4];
-    const puma560_real_t t379 = t14 * t369 + t10 * t371;
-    const puma560_real_t t380 = parameters[YZ4] - t379;
-    const puma560_real_t t381 = t6 * t378 + t8 * t380;
+    const puma560_real_t t379 = t14 * t369 + t10 * t371; /* link j5: column of the mass matrix */
+    const puma560_real_t t380 = parameters[YZ4] - t379; /* link j5: inertia of it and all beyond */
+    const puma560_real_t t381 = t6 * t378 + t8 * t380; /* link j4: column of the mass matrix */
     const puma560_real_t t382 = PUMA560_C(-0.4318) * t238;
+    /* link j4: inertia of it and all beyond */
     const puma560_real_t t383 = parameters[XY3R] + (t382 + PUMA560_C(-0.0203) * t246 - t381);
+    /* link j3: inertia of it and all beyond */
     const puma560_real_t t384 = t1 * (t366 - t377) + t383 * (PUMA560_C(2.0) * t3);
     const puma560_real_t t385 = t1 * t384;
     const puma560_real_t t386 = PUMA560_C(-0.8636) * t276;
@@ -564,36 +639,40 @@ int puma560_inverse_dynamics_derivatives(
     const puma560_real_t t388 = t377 + t385 - (t386 + t387);
     const puma560_real_t t389 = t385 - t366 + t387 - parameters[XX2R];
     const puma560_real_t t390 = t3 * t384 - t383 + PUMA560_C(0.4318) * t282 - parameters[XY2];
+    /* link j2: inertia of it and all beyond */
     const puma560_real_t t391 = t2 * (t2 * (t388 + t389) + t390 * (PUMA560_C(-2.0) * t0));
     input_by_ddq[0] = PUMA560_C(0.06944177768728742) * (t389 - t391 - parameters[ZZ1R]);
+    /* link j4: inertia of it and all beyond */
     const puma560_real_t t392 = parameters[XZ3] - (t373 - t8 * t374 - PUMA560_C(0.0203) * t243);
-    const puma560_real_t t393 = PUMA560_C(0.4318) * t243;
+    const puma560_real_t t393 = PUMA560_C(0.4318) * t243; /* link j4: column of the mass matrix */
     const puma560_real_t t394 = t8 * t378 - t6 * t380 + t393;
-    const puma560_real_t t395 = parameters[YZ3] + t394;
-    const puma560_real_t t396 = t1 * t392 - t3 * t395;
+    const puma560_real_t t395 = parameters[YZ3] + t394; /* link j4: inertia of it and all beyond */
+    const puma560_real_t t396 = t1 * t392 - t3 * t395; /* link j3: column of the mass matrix */
     const puma560_real_t t397 = PUMA560_C(-0.1254) * t276;
+    /* link j3: inertia of it and all beyond */
     const puma560_real_t t398 = parameters[XZ2R] + (t396 + (t393 + t397));
+    /* link j3: column of the mass matrix */
     const puma560_real_t t399 = t3 * t392 + t1 * t395 + PUMA560_C(-0.1254) * t282;
-    const puma560_real_t t400 = parameters[YZ2] + t399;
-    const puma560_real_t t401 = t0 * t398 + t2 * t400;
+    const puma560_real_t t400 = parameters[YZ2] + t399; /* link j3: inertia of it and all beyond */
+    const puma560_real_t t401 = t0 * t398 + t2 * t400; /* link j2: column of the mass matrix */
     input_by_ddq[6] = PUMA560_C(-0.04032672714331514) * t401;
-    const puma560_real_t t402 = t396 + t397;
+    const puma560_real_t t402 = t396 + t397; /* link j3: column of the mass matrix */
     const puma560_real_t t403 = t0 * t402 + t2 * t399;
     input_by_ddq[12] = PUMA560_C(0.08095560645504385) * t403;
-    const puma560_real_t t404 = t382 - t381;
+    const puma560_real_t t404 = t382 - t381; /* link j4: column of the mass matrix */
     const puma560_real_t t405 = t364 + PUMA560_C(0.0203) * t238;
     const puma560_real_t t406 = t3 * t405 - t1 * t404 + PUMA560_C(-0.1254) * t322;
     const puma560_real_t t407 = t3 * t404 + t1 * t405 + (PUMA560_C(-0.1254) * t324 - t382);
     const puma560_real_t t408 = t2 * t407 - t0 * t406;
     input_by_ddq[18] = PUMA560_C(-0.18787994020908783) * t408;
-    const puma560_real_t t409 = PUMA560_C(0.4318) * t331;
+    const puma560_real_t t409 = PUMA560_C(0.4318) * t331; /* link j5: column of the mass matrix */
     const puma560_real_t t410 = t8 * t368 - t6 * t372 + t409;
     const puma560_real_t t411 = t379 + PUMA560_C(-0.0203) * t331;
     const puma560_real_t t412 = t3 * t411 - t1 * t410 + PUMA560_C(0.1254) * t336;
     const puma560_real_t t413 = t3 * t410 + t1 * t411 + (PUMA560_C(-0.1254) * t338 - t409);
     const puma560_real_t t414 = t2 * t413 - t0 * t412;
     input_by_ddq[24] = PUMA560_C(-0.19862511694053758) * t414;
-    const puma560_real_t t415 = t14 * parameters[ZZ6] - t10 * t360;
+    const puma560_real_t t415 = t14 * parameters[ZZ6] - t10 * t360; /* link j6: column of the mass matrix */
     const puma560_real_t t416 = PUMA560_C(-0.4318) * t347;
     const puma560_real_t t417 = t416 - (t6 * t415 + t8 * t370);
     const puma560_real_t t418 = t14 * t360 + t10 * parameters[ZZ6];
@@ -602,60 +681,77 @@ int puma560_inverse_dynamics_derivatives(
     const puma560_real_t t421 = t3 * t419 - t1 * t417 + PUMA560_C(-0.1254) * t353;
     const puma560_real_t t422 = t2 * t420 - t0 * t421;
     input_by_ddq[30] = PUMA560_C(-0.1862884266452062) * t422;
-    const puma560_real_t t423 = PUMA560_C(-2.0) * t63;
+    const puma560_real_t t423 = PUMA560_C(-2.0) * t63; /* link j2: derivatives */
     const puma560_real_t t424 = PUMA560_C(2.0) * t69;
     const puma560_real_t t425 = t389 * t66 - t390 * t72 - t398 * t79 - (t290 * t423 + t295 * t424);
     const puma560_real_t t426 = t390 * t66 + t388 * t72 - t400 * t79 - (t298 * t423 + t292 * t424);
     const puma560_real_t t427 = t0 * (t156 + (t425 - t243 * t67)) + t2 * (t153 + (t426 + t243 * t73));
     input_by_q[1] = PUMA560_C(0.06944177768728742) * t427;
+    /* link j4: inertia of it and all beyond */
     const puma560_real_t t428 = parameters[ZZ3R] + (t367 + t375 + (t365 + t376));
-    const puma560_real_t t429 = parameters[ZZ2R] + (t428 - t386);
+    const puma560_real_t t429 = parameters[ZZ2R] + (t428 - t386); /* link j3: inertia of it and all beyond */
+    /* link j2: derivatives */
     const puma560_real_t t430 = t400 * t72 - t398 * t66 - t429 * t79 + (t63 * t305 + t69 * t307);
     const puma560_real_t t431 = (parameters[MY2] + t282) * t73 - (parameters[MX2R] + t276) * t67 + t430;
     input_by_q[7] = PUMA560_C(0.04032672714331514) * t431;
-    const puma560_real_t t432 = t428 + PUMA560_C(0.4318) * t276;
+    const puma560_real_t t432 = t428 + PUMA560_C(0.4318) * t276; /* link j3: column of the mass matrix */
+    /* link j3: derivatives */
     const puma560_real_t t433 = t63 * t311 + t69 * t312 + (t402 * t66 - t399 * t72 + t432 * t79);
     input_by_q[13] = PUMA560_C(0.08095560645504385) * (t433 + (t276 * t67 - t282 * t73));
-    const puma560_real_t t434 = t394 + PUMA560_C(-0.4318) * t322;
+    const puma560_real_t t434 = t394 + PUMA560_C(-0.4318) * t322; /* link j4: column of the mass matrix */
+    /* link j4: derivatives */
     const puma560_real_t t435 = t63 * t323 - t69 * t326 + (t406 * t66 + t407 * t72 - t434 * t79);
     input_by_q[19] = PUMA560_C(0.18787994020908783) * (t435 + (t324 * t73 + t322 * t67));
+    /* link j5: column of the mass matrix */
     const puma560_real_t t436 = t8 * t372 + t6 * t368 + (PUMA560_C(0.0203) * t236 + PUMA560_C(0.4318) * t334);
     const puma560_real_t t437 = t436 + PUMA560_C(0.4318) * t336;
+    /* link j5: derivatives */
     const puma560_real_t t438 = t63 * t337 - t69 * t339 + (t412 * t66 + t413 * t72 - t437 * t79);
     input_by_q[25] = PUMA560_C(0.19862511694053758) * (t438 + (t338 * t73 - t336 * t67));
+    /* link j6: column of the mass matrix */
     const puma560_real_t t439 = t8 * t415 - t6 * t370 + (PUMA560_C(-0.0203) * t348
         + PUMA560_C(0.4318) * t351);
     const puma560_real_t t440 = t439 + PUMA560_C(-0.4318) * t353;
+    /* link j6: derivatives */
     const puma560_real_t t441 = t63 * t354 - t69 * t356 + (t421 * t66 + t420 * t72 - t440 * t79);
     input_by_q[31] = PUMA560_C(0.1862884266452062) * (t441 + (t355 * t73 + t353 * t67));
     const puma560_real_t t442 = parameters[ZZ3R] - t261;
+    /* link j4: inertia, momentum beyond */
     const puma560_real_t t443 = t12 * t442 - parameters[YZ3] * t7 + (t215 + t300 - t243 * t239);
     const puma560_real_t t444 = parameters[XZ3] * t7 + t5 * t442 + (t8 * t263 - t6 * t264 + t243 * t247);
+    /* link j3: inertia, momentum beyond */
     const puma560_real_t t445 = t1 * t443 - t3 * t444 + (PUMA560_C(0.1254) * t272 + t243 * t277);
     const puma560_real_t t446 = parameters[ZZ2R] - t294;
+    /* link j2: derivatives */
     const puma560_real_t t447 = PUMA560_C(2.0) * (t445 - (parameters[YZ2] * dq[1] + t63 * t446))
         - (t389 * t423 + t390 * t424);
+    /* link j3: inertia, momentum beyond */
     const puma560_real_t t448 = t3 * t443 + t1 * t444 + (PUMA560_C(0.1254) * t296 - t243 * t283);
+    /* link j2: derivatives */
     const puma560_real_t t449 = PUMA560_C(2.0) * (parameters[XZ2R] * dq[1] + t69 * t446 + t448) + (t388 * t424
         - t390 * t423);
     input_by_dq[1] = PUMA560_C(0.06944177768728742) * (t0 * t447 + t2 * t449);
+    /* link j4: inertia, momentum beyond */
     const puma560_real_t t450 = t221 - t206 - t245 - t249 - (t250 + t254);
+    /* link j2: derivatives */
     const puma560_real_t t451 = PUMA560_C(2.0) * (t288 - t291 + (t450 + (t281 + t286) - t287));
     const puma560_real_t t452 = PUMA560_C(0.04032672714331514) * (t451 + PUMA560_C(2.0) * (t400 * t69
         - t398 * t63));
     input_by_dq[7] = PUMA560_C(468.7608695652174) * parameters[FV2] + t452;
-    const puma560_real_t t453 = PUMA560_C(-2.0) * t450;
+    const puma560_real_t t453 = PUMA560_C(-2.0) * t450; /* link j3: derivatives */
     const puma560_real_t t454 = t453 + (t276 * t325 + t282 * t321) + PUMA560_C(2.0) * (t402 * t63
         - t399 * t69);
     input_by_dq[13] = PUMA560_C(0.08095560645504385) * t454;
-    const puma560_real_t t455 = t8 * t313 - t6 * t314 + t243 * t315;
+    const puma560_real_t t455 = t8 * t313 - t6 * t314 + t243 * t315; /* link j4: derivatives */
     const puma560_real_t t456 = t455 + (t322 * t325 - t324 * t321) + PUMA560_C(2.0) * (t406 * t63
         + t407 * t69);
     input_by_dq[19] = PUMA560_C(0.18787994020908783) * t456;
+    /* link j5: derivatives */
     const puma560_real_t t457 = t8 * t329 + t6 * t330 + (t334 * t315 - t236 * t319);
     const puma560_real_t t458 = t457 - (t336 * t325 + t338 * t321) + PUMA560_C(2.0) * (t412 * t63
         + t413 * t69);
     input_by_dq[25] = PUMA560_C(0.19862511694053758) * t458;
+    /* link j6: derivatives */
     const puma560_real_t t459 = t8 * t344 + t6 * t345 + (t348 * t319 + t351 * t315);
     const puma560_real_t t460 = t459 + (t353 * t325 - t355 * t321) + PUMA560_C(2.0) * (t421 * t63
         + t420 * t69);
@@ -666,14 +762,15 @@ int puma560_inverse_dynamics_derivatives(
     input_by_ddq[19] = PUMA560_C(0.18787994020908783) * t434;
     input_by_ddq[25] = PUMA560_C(0.19862511694053758) * t437;
     input_by_ddq[31] = PUMA560_C(0.1862884266452062) * t440;
-    const puma560_real_t t461 = PUMA560_C(-2.0) * t12;
+    const puma560_real_t t461 = PUMA560_C(-2.0) * t12; /* link j3: derivatives */
     const puma560_real_t t462 = PUMA560_C(2.0) * t5;
-    const puma560_real_t t463 = t85 + t60;
+    const puma560_real_t t463 = t85 + t60; /* link j4: motion */
+    /* link j3: derivatives */
     const puma560_real_t t464 = t252 * t461 + t262 * t462 + (t377 * t34 + t383 * t22 - t392 * t463);
     const puma560_real_t t465 = t144 + (t464 - t243 * t75);
     const puma560_real_t t466 = t255 * t462 - t267 * t461 + (t383 * t34 + t366 * t22 - t395 * t463);
-    const puma560_real_t t467 = t243 * t88;
-    const puma560_real_t t468 = t139 - (t467 + t466);
+    const puma560_real_t t467 = t243 * t88; /* link j4: derivatives */
+    const puma560_real_t t468 = t139 - (t467 + t466); /* link j3: derivatives */
     const puma560_real_t t469 = t148 + (t280 * t462 + (t275 * t463 - t243 * t22));
     const puma560_real_t t470 = t146 + (t274 * t463 - t243 * t34 - t280 * t461);
     const puma560_real_t t471 = t3 * t469 - t1 * t470;
@@ -688,12 +785,16 @@ int puma560_inverse_dynamics_derivatives(
     input_by_q[8] = PUMA560_C(0.04032672714331514) * t478;
     const puma560_real_t t479 = PUMA560_C(0.08095560645504385) * (t12 * t308 + t5 * t309 - t476 - t477);
     input_by_q[14] = t479;
+    /* link j4: derivatives */
     const puma560_real_t t480 = t5 * t320 - t12 * t316 + (t404 * t34 + t405 * t22 - t394 * t463);
     input_by_q[20] = PUMA560_C(0.18787994020908783) * (t480 + t467);
+    /* link j5: derivatives */
     const puma560_real_t t481 = t5 * t335 - t12 * t332 + (t410 * t34 + t411 * t22 - t436 * t463);
     input_by_q[26] = PUMA560_C(0.19862511694053758) * (t481 + (t334 * t88 - t236 * t75));
+    /* link j6: derivatives */
     const puma560_real_t t482 = t5 * t352 - t12 * t349 + (t417 * t34 + t419 * t22 - t439 * t463);
     input_by_q[32] = PUMA560_C(0.1862884266452062) * (t482 + (t351 * t88 + t348 * t75));
+    /* link j3: derivatives */
     const puma560_real_t t483 = PUMA560_C(2.0) * t443 + (t383 * t462 - t377 * t461);
     const puma560_real_t t484 = PUMA560_C(2.0) * t444 + (t366 * t462 - t383 * t461);
     const puma560_real_t t485 = PUMA560_C(2.0) * t270 + t243 * t461;
@@ -725,15 +826,17 @@ int puma560_inverse_dynamics_derivatives(
     input_by_ddq[20] = PUMA560_C(0.18787994020908783) * t394;
     input_by_ddq[26] = PUMA560_C(0.19862511694053758) * t436;
     input_by_ddq[32] = PUMA560_C(0.1862884266452062) * t439;
-    const puma560_real_t t496 = PUMA560_C(2.0) * t31;
+    const puma560_real_t t496 = PUMA560_C(2.0) * t31; /* link j4: derivatives */
     const puma560_real_t t497 = PUMA560_C(-2.0) * t9;
-    const puma560_real_t t498 = t128 + t121;
+    const puma560_real_t t498 = t128 + t121; /* link j5: motion */
+    /* link j4: derivatives */
     const puma560_real_t t499 = t206 * t496 + t215 * t497 - (t367 * t25 - t373 * t38 - t378 * t498);
     const puma560_real_t t500 = t129 + (t499 + t246 * t84);
-    const puma560_real_t t501 = t368 * t38;
+    const puma560_real_t t501 = t368 * t38; /* link j5: derivatives */
+    /* link j4: derivatives */
     const puma560_real_t t502 = t219 * t496 - t209 * t497 + (t373 * t25 - t501 + t380 * t498);
-    const puma560_real_t t503 = t246 * t91;
-    const puma560_real_t t504 = t123 + (t503 + t502);
+    const puma560_real_t t503 = t246 * t91; /* link j5: derivatives */
+    const puma560_real_t t504 = t123 + (t503 + t502); /* link j4: derivatives */
     const puma560_real_t t505 = t134 + (t241 * t496 + (t237 * t498 - t246 * t25));
     const puma560_real_t t506 = t136 + (t241 * t497 + (t246 * t38 + t233 * t498));
     const puma560_real_t t507 = t8 * t506 - t6 * t505;
@@ -754,10 +857,13 @@ int puma560_inverse_dynamics_derivatives(
     input_by_q[15] = PUMA560_C(-0.08095560645504385) * t518;
     const puma560_real_t t519 = PUMA560_C(0.18787994020908783) * (t511 + (t510 + (t31 * t313 + t9 * t314)));
     input_by_q[21] = t519;
+    /* link j5: derivatives */
     const puma560_real_t t520 = t31 * t329 - t9 * t330 + (t372 * t25 - t501 - t379 * t498);
     input_by_q[27] = PUMA560_C(0.19862511694053758) * (t520 + t503);
+    /* link j6: derivatives */
     const puma560_real_t t521 = t31 * t344 - t9 * t345 + (t415 * t25 + t370 * t38 - t418 * t498);
     input_by_q[33] = PUMA560_C(0.1862884266452062) * (t521 + (t346 * t91 - t234 * t84));
+    /* link j4: derivatives */
     const puma560_real_t t522 = PUMA560_C(2.0) * t258 + (t367 * t496 + t373 * t497);
     const puma560_real_t t523 = PUMA560_C(2.0) * t259 + (t373 * t496 + t368 * t497);
     const puma560_real_t t524 = PUMA560_C(2.0) * t229 + t246 * t497;
@@ -792,15 +898,17 @@ int puma560_inverse_dynamics_derivatives(
         + PUMA560_C(0.18787994020908783) * t364;
     input_by_ddq[27] = PUMA560_C(0.19862511694053758) * t379;
     input_by_ddq[33] = PUMA560_C(0.1862884266452062) * t418;
-    const puma560_real_t t539 = PUMA560_C(2.0) * t16;
+    const puma560_real_t t539 = PUMA560_C(2.0) * t16; /* link j5: derivatives */
     const puma560_real_t t540 = PUMA560_C(2.0) * t15;
-    const puma560_real_t t541 = t96 + t116;
+    const puma560_real_t t541 = t96 + t116; /* link j6: motion */
+    /* link j5: derivatives */
     const puma560_real_t t542 = t189 * t539 + t197 * t540 + (t359 * t49 + t361 * t42 - t369 * t541);
     const puma560_real_t t543 = t98 + (t542 + t232 * t90);
-    const puma560_real_t t544 = parameters[ZZ6] * t42;
+    const puma560_real_t t544 = parameters[ZZ6] * t42; /* link j6: derivatives */
+    /* link j5: derivatives */
     const puma560_real_t t545 = t201 * t539 + t192 * t540 + (t544 + t361 * t49 - t371 * t541);
-    const puma560_real_t t546 = t232 * t107;
-    const puma560_real_t t547 = t117 + (t546 + t545);
+    const puma560_real_t t546 = t232 * t107; /* link j6: derivatives */
+    const puma560_real_t t547 = t117 + (t546 + t545); /* link j5: derivatives */
     const puma560_real_t t548 = t10 * t543 - t14 * t547;
     const puma560_real_t t549 = t369 * t49 + t371 * t42 - t368 * t541;
     const puma560_real_t t550 = t235 * t90 + parameters[MY5R] * t107;
@@ -827,8 +935,10 @@ int puma560_inverse_dynamics_derivatives(
     input_by_q[22] = PUMA560_C(0.18787994020908783) * t559;
     const puma560_real_t t567 = PUMA560_C(0.19862511694053758) * (t550 + (t549 + (t16 * t327 + t15 * t328)));
     input_by_q[28] = t567;
+    /* link j6: derivatives */
     const puma560_real_t t568 = t16 * t342 + t15 * t343 + (t360 * t49 + t544 + t370 * t541);
     input_by_q[34] = PUMA560_C(0.1862884266452062) * (t568 + t546);
+    /* link j5: derivatives */
     const puma560_real_t t569 = PUMA560_C(2.0) * t212 + (t359 * t539 + t361 * t540);
     const puma560_real_t t570 = PUMA560_C(2.0) * t213 + (t361 * t539 + parameters[ZZ6] * t540);
     const puma560_real_t t571 = t10 * t569 - t14 * t570;
@@ -866,8 +976,8 @@ int puma560_inverse_dynamics_derivatives(
     input_by_ddq[28] = PUMA560_C(1027.4714285714285) * parameters[IA5]
         + PUMA560_C(0.19862511694053758) * t368;
     input_by_ddq[34] = PUMA560_C(-0.1862884266452062) * t370;
-    const puma560_real_t t590 = t58 + t59;
-    const puma560_real_t t591 = PUMA560_C(2.0) * t54;
+    const puma560_real_t t590 = t58 + t59; /* link j6: force and moment */
+    const puma560_real_t t591 = PUMA560_C(2.0) * t54; /* link j6: derivatives */
     const puma560_real_t t592 = PUMA560_C(2.0) * t53;
     const puma560_real_t t593 = t178 * t591 - t184 * t592 - (parameters[XX6R] * t48 - parameters[XY6] * t56
         + parameters[XZ6] * t590);

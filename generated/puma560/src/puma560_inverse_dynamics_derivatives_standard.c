@@ -7,16 +7,16 @@
  * Arm puma560, description e8eb13fe224405b2.
  * SPDX-License-Identifier: 0BSD
  *
- * Operations: 2647 (1471 mul, 1176 add, 0 neg), 10 trig, 6 other.
+ * Operations: 2647 (1471 mul, 1176 add, 0 neg), 10 trig, 6 other calls (sign, select and the like).
  *
- * @param[in]   q             [6]   [rad]                joint coordinates; norm at most 10000
- * @param[in]   dq            [6]   [rad/s]              joint velocities; norm at most 100000
- * @param[in]   ddq           [6]   [rad/s^2]            joint accelerations; norm at most 1e+08
- * @param[in]   parameters    [78]                       standard parameters; norm at most 1e+09
- * @param[out]  input         [6]   [A]                  inputs: motor currents, efforts where undriven
- * @param[out]  input_by_q    [36]  [(A) per (rad)]      d input / d q; 6 x 6, row-major
- * @param[out]  input_by_dq   [36]  [(A) per (rad/s)]    d input / d dq; 6 x 6, row-major
- * @param[out]  input_by_ddq  [36]  [(A) per (rad/s^2)]  d input / d ddq; 6 x 6, row-major
+ * @param[in]   q             [6]   [rad]              joint coordinates; norm at most 10000
+ * @param[in]   dq            [6]   [rad/s]            joint velocities; norm at most 100000
+ * @param[in]   ddq           [6]   [rad/s^2]          joint accelerations; norm at most 1e+08
+ * @param[in]   parameters    [78]                     standard parameters; norm at most 1e+09
+ * @param[out]  input         [6]   [A]                inputs: motor currents, efforts where undriven
+ * @param[out]  input_by_q    [36]  [A per rad]        d input / d q; 6 x 6, row-major
+ * @param[out]  input_by_dq   [36]  [A per (rad/s)]    d input / d dq; 6 x 6, row-major
+ * @param[out]  input_by_ddq  [36]  [A per (rad/s^2)]  d input / d ddq; 6 x 6, row-major
  *
  * Coordinates:
  *
@@ -110,11 +110,11 @@
  */
 #include "puma560_private.h"
 
-#if PUMA560_GENERATION != 0xAC9DC6F4UL
+#if PUMA560_GENERATION != 0x0486C622UL
 #error "puma560.h and puma560_inverse_dynamics_derivatives_standard.c are of different generations: generate the arm again"
 #endif
 
-int puma560_inverse_dynamics_derivatives_standard(
+puma560_status_t puma560_inverse_dynamics_derivatives_standard(
     const puma560_real_t q[PUMA560_N_JOINTS],
     const puma560_real_t dq[PUMA560_N_JOINTS],
     const puma560_real_t ddq[PUMA560_N_JOINTS],
@@ -128,7 +128,7 @@ int puma560_inverse_dynamics_derivatives_standard(
         M2, XX3, XY3, XZ3, YY3, YZ3, ZZ3, MX3, MY3, MZ3, M3, XX4, XY4, XZ4, YY4, YZ4, ZZ4, MX4, MY4, MZ4, M4,
         XX5, XY5, XZ5, YY5, YZ5, ZZ5, MX5, MY5, MZ5, M5, XX6, XY6, XZ6, YY6, YZ6, ZZ6, MX6, MY6, MZ6, M6, FV1,
         FC1, IA1, FV2, FC2, IA2, FV3, FC3, IA3, FV4, FC4, IA4, FV5, FC5, IA5, FV6, FC6, IA6 };
-    int status = PUMA560_STATUS_OK;
+    puma560_status_t status = PUMA560_STATUS_OK;
 
     if (!puma560_within_joints(q, PUMA560_C(1.0e8))
         || !puma560_within_joints(dq, PUMA560_C(1.0e10))
@@ -154,44 +154,44 @@ int puma560_inverse_dynamics_derivatives_standard(
     PUMA560_SINCOS(q[4], &t25, &t24);
     puma560_real_t t30, t47;
     PUMA560_SINCOS(q[5], &t30, &t47);
-    const puma560_real_t t4 = t0 * t1 + t2 * t3;
+    const puma560_real_t t4 = t0 * t1 + t2 * t3; /* link j3: motion */
     const puma560_real_t t5 = dq[0] * t4;
     const puma560_real_t t6 = t0 * t3 - t2 * t1;
     const puma560_real_t t7 = dq[0] * t6;
     const puma560_real_t t8 = t5 * t7;
     const puma560_real_t t9 = ddq[1] + ddq[2];
-    const puma560_real_t t10 = t9 + t8;
-    const puma560_real_t t12 = ddq[0] * t4;
+    const puma560_real_t t10 = t9 + t8; /* link j4: motion */
+    const puma560_real_t t12 = ddq[0] * t4; /* link j3: motion */
     const puma560_real_t t13 = dq[1] + dq[2];
     const puma560_real_t t14 = t7 * t13;
     const puma560_real_t t15 = t14 - t12;
-    const puma560_real_t t16 = t14 + t15;
+    const puma560_real_t t16 = t14 + t15; /* link j4: motion */
     const puma560_real_t t18 = t11 * t10 + t17 * t16;
     const puma560_real_t t19 = t11 * t5 + t17 * t13;
     const puma560_real_t t20 = dq[3] + t7;
     const puma560_real_t t21 = t19 * t20;
     const puma560_real_t t22 = t18 - t21;
-    const puma560_real_t t23 = ddq[4] + t22;
+    const puma560_real_t t23 = ddq[4] + t22; /* link j5: motion */
     const puma560_real_t t26 = t24 * t19 - t25 * t20;
     const puma560_real_t t27 = t25 * t19 + t24 * t20;
     const puma560_real_t t28 = t26 * t27;
-    const puma560_real_t t29 = t23 + t28;
-    const puma560_real_t t31 = ddq[0] * t6;
+    const puma560_real_t t29 = t23 + t28; /* link j6: motion */
+    const puma560_real_t t31 = ddq[0] * t6; /* link j3: motion */
     const puma560_real_t t32 = t5 * t13;
     const puma560_real_t t33 = t31 + t32;
-    const puma560_real_t t34 = ddq[3] + t33;
+    const puma560_real_t t34 = ddq[3] + t33; /* link j4: motion */
     const puma560_real_t t35 = t17 * t5 - t11 * t13;
     const puma560_real_t t36 = t19 * t35;
-    const puma560_real_t t37 = t34 + t36;
-    const puma560_real_t t38 = t17 * t10 - t11 * t16;
+    const puma560_real_t t37 = t34 + t36; /* link j5: motion */
+    const puma560_real_t t38 = t17 * t10 - t11 * t16; /* link j4: motion */
     const puma560_real_t t39 = t35 * t20;
     const puma560_real_t t40 = t38 - t39;
-    const puma560_real_t t41 = t40 - t39;
+    const puma560_real_t t41 = t40 - t39; /* link j5: motion */
     const puma560_real_t t42 = t24 * t41 - t25 * t37;
     const puma560_real_t t43 = t35 - dq[4];
     const puma560_real_t t44 = t27 * t43;
     const puma560_real_t t45 = t42 + t44;
-    const puma560_real_t t46 = t44 + t45;
+    const puma560_real_t t46 = t44 + t45; /* link j6: motion */
     const puma560_real_t t48 = t30 * t29 + t47 * t46;
     const puma560_real_t t49 = t30 * t26 + t47 * t43;
     const puma560_real_t t50 = dq[5] + t27;
@@ -201,208 +201,250 @@ int puma560_inverse_dynamics_derivatives_standard(
     const puma560_real_t t54 = t30 * t43 - t47 * t26;
     const puma560_real_t t55 = t54 * t50;
     const puma560_real_t t56 = t53 + t55;
-    const puma560_real_t t57 = t55 + t56;
+    const puma560_real_t t57 = t55 + t56; /* link j6: columns */
+    /* link j6: force and moment */
     const puma560_real_t t58 = t51 * (parameters[YY6] - parameters[ZZ6]) + t52 * parameters[XX6]
         + t57 * parameters[XY6];
-    const puma560_real_t t59 = t24 * t37 + t25 * t41;
+    const puma560_real_t t59 = t24 * t37 + t25 * t41; /* link j5: motion */
     const puma560_real_t t60 = t26 * t43;
     const puma560_real_t t61 = t60 - t59;
-    const puma560_real_t t62 = t61 - ddq[5];
+    const puma560_real_t t62 = t61 - ddq[5]; /* link j6: motion */
     const puma560_real_t t63 = t54 * t49;
-    const puma560_real_t t64 = t63 - t62;
-    const puma560_real_t t65 = t49 * t49;
+    const puma560_real_t t64 = t63 - t62; /* link j6: columns */
+    const puma560_real_t t65 = t49 * t49; /* link j6: motion */
     const puma560_real_t t66 = t50 * t50;
-    const puma560_real_t t67 = t7 * t7;
+    const puma560_real_t t67 = t7 * t7; /* link j3: motion */
     const puma560_real_t t68 = t13 * t13;
-    const puma560_real_t t69 = t67 + t68;
-    const puma560_real_t t70 = t2 * dq[0];
+    const puma560_real_t t69 = t67 + t68; /* link j4: motion */
+    const puma560_real_t t70 = t2 * dq[0]; /* link j2: motion */
     const puma560_real_t t71 = t70 * t70;
     const puma560_real_t t72 = dq[1] * dq[1];
     const puma560_real_t t73 = t2 * ddq[0];
     const puma560_real_t t74 = PUMA560_C(-9.81) * t0;
+    /* link j3: motion */
     const puma560_real_t t75 = t74 + (PUMA560_C(-0.4318) * (t71 + t72) + PUMA560_C(-0.1254) * t73);
-    const puma560_real_t t76 = t0 * dq[0];
+    const puma560_real_t t76 = t0 * dq[0]; /* link j2: motion */
     const puma560_real_t t77 = t76 * t70;
-    const puma560_real_t t78 = ddq[1] + t77;
-    const puma560_real_t t79 = t0 * ddq[0];
+    const puma560_real_t t78 = ddq[1] + t77; /* link j3: motion */
+    const puma560_real_t t79 = t0 * ddq[0]; /* link j2: motion */
     const puma560_real_t t80 = PUMA560_C(9.81) * t2;
+    /* link j3: motion */
     const puma560_real_t t81 = t80 - (PUMA560_C(0.4318) * t78 + PUMA560_C(0.1254) * t79);
     const puma560_real_t t82 = t1 * t75 - t3 * t81;
-    const puma560_real_t t83 = PUMA560_C(0.0203) * t69 + PUMA560_C(0.4318) * t10 - t82;
+    const puma560_real_t t83 = PUMA560_C(0.0203) * t69 + PUMA560_C(0.4318) * t10 - t82; /* link j4: motion */
     const puma560_real_t t84 = t32 + t33;
-    const puma560_real_t t85 = t76 * t76;
-    const puma560_real_t t86 = t85 + t71;
-    const puma560_real_t t87 = dq[1] * t76;
+    const puma560_real_t t85 = t76 * t76; /* link j2: motion */
+    const puma560_real_t t86 = t85 + t71; /* link j3: motion */
+    const puma560_real_t t87 = dq[1] * t76; /* link j2: motion */
     const puma560_real_t t88 = t73 - t87;
-    const puma560_real_t t89 = t87 - t88;
+    const puma560_real_t t89 = t87 - t88; /* link j3: motion */
     const puma560_real_t t90 = PUMA560_C(-0.4318) * t89 + PUMA560_C(-0.1254) * t86;
+    /* link j4: motion */
     const puma560_real_t t91 = t90 + (PUMA560_C(-0.0203) * t84 + PUMA560_C(0.4318) * t16);
     const puma560_real_t t92 = t11 * t83 + t17 * t91;
     const puma560_real_t t93 = t8 - t9;
-    const puma560_real_t t94 = t5 * t5;
-    const puma560_real_t t95 = t94 + t68;
-    const puma560_real_t t96 = t3 * t75 + t1 * t81;
+    const puma560_real_t t94 = t5 * t5; /* link j3: motion */
+    const puma560_real_t t95 = t94 + t68; /* link j4: motion */
+    const puma560_real_t t96 = t3 * t75 + t1 * t81; /* link j3: motion */
+    /* link j4: motion */
     const puma560_real_t t97 = t96 + (PUMA560_C(0.0203) * t93 + PUMA560_C(0.4318) * t95);
-    const puma560_real_t t98 = t24 * t92 + t25 * t97;
-    const puma560_real_t t99 = t11 * t91 - t17 * t83;
-    const puma560_real_t t100 = t47 * t99 - t30 * t98;
-    const puma560_real_t t101 = t100 * parameters[MZ6];
-    const puma560_real_t t102 = t25 * t92 - t24 * t97;
+    const puma560_real_t t98 = t24 * t92 + t25 * t97; /* link j5: motion */
+    const puma560_real_t t99 = t11 * t91 - t17 * t83; /* link j4: motion */
+    const puma560_real_t t100 = t47 * t99 - t30 * t98; /* link j6: motion */
+    const puma560_real_t t101 = t100 * parameters[MZ6]; /* link j6: force and moment */
+    const puma560_real_t t102 = t25 * t92 - t24 * t97; /* link j5: motion */
+    /* link j6: force and moment */
     const puma560_real_t t103 = (t66 - t65) * parameters[YZ6] + (t58 - t64 * parameters[XZ6])
         - (t102 * parameters[MY6] + t101);
-    const puma560_real_t t104 = t52 - t51;
+    const puma560_real_t t104 = t52 - t51; /* link j6: columns */
+    /* link j6: force and moment */
     const puma560_real_t t105 = t56 * parameters[YY6] - t55 * (parameters[XX6] - parameters[ZZ6])
         + t104 * parameters[XY6];
-    const puma560_real_t t106 = t62 + t63;
-    const puma560_real_t t107 = t54 * t54;
+    const puma560_real_t t106 = t62 + t63; /* link j6: columns */
+    const puma560_real_t t107 = t54 * t54; /* link j6: motion */
     const puma560_real_t t108 = t47 * t98 + t30 * t99;
-    const puma560_real_t t109 = t108 * parameters[MZ6];
+    const puma560_real_t t109 = t108 * parameters[MZ6]; /* link j6: force and moment */
     const puma560_real_t t110 = (t107 - t66) * parameters[XZ6] + (t105 + t106 * parameters[YZ6]) + (t109
         + t102 * parameters[MX6]);
-    const puma560_real_t t111 = t60 + t61;
+    const puma560_real_t t111 = t60 + t61; /* link j6: motion */
+    /* link j5: force and moment */
     const puma560_real_t t112 = t45 * parameters[XX5] - t44 * (parameters[YY5] - parameters[ZZ5])
         + t111 * parameters[XY5];
-    const puma560_real_t t113 = t23 - t28;
-    const puma560_real_t t114 = t27 * t27;
+    const puma560_real_t t113 = t23 - t28; /* link j6: motion */
+    const puma560_real_t t114 = t27 * t27; /* link j5: motion */
     const puma560_real_t t115 = t43 * t43;
+    /* link j5: force and moment */
     const puma560_real_t t116 = (t114 - t115) * parameters[YZ5] - (t112 - t113 * parameters[XZ5])
         - (t102 * parameters[MZ5] - t99 * parameters[MY5]);
-    const puma560_real_t t117 = t116 + (t30 * t110 - t47 * t103);
-    const puma560_real_t t118 = parameters[YY6] - parameters[XX6];
+    const puma560_real_t t117 = t116 + (t30 * t110 - t47 * t103); /* link j6: what it passes on */
+    const puma560_real_t t118 = parameters[YY6] - parameters[XX6]; /* link j6: inertia of it and all beyond */
+    /* link j6: force and moment */
     const puma560_real_t t119 = t62 * parameters[ZZ6] - t63 * t118 + t53 * parameters[YZ6]
         + t48 * parameters[XZ6];
     const puma560_real_t t120 = (t65 - t107) * parameters[XY6] + t119 + (t100 * parameters[MX6]
         - t108 * parameters[MY6]);
+    /* link j5: force and moment */
     const puma560_real_t t121 = t61 * parameters[YY5] - t60 * (parameters[XX5] - parameters[ZZ5])
         + t46 * parameters[XY5];
-    const puma560_real_t t122 = t26 * t26;
+    const puma560_real_t t122 = t26 * t26; /* link j5: motion */
+    /* link j5: force and moment */
     const puma560_real_t t123 = (t122 - t115) * parameters[XZ5] + (t121 - t29 * parameters[YZ5])
         + (t98 * parameters[MZ5] + t99 * parameters[MX5]);
-    const puma560_real_t t124 = t123 + t120;
-    const puma560_real_t t125 = t21 - t22;
+    const puma560_real_t t124 = t123 + t120; /* link j6: what it passes on */
+    const puma560_real_t t125 = t21 - t22; /* link j5: motion */
+    /* link j4: force and moment */
     const puma560_real_t t126 = t39 * (parameters[YY4] - parameters[ZZ4]) + t40 * parameters[XX4]
         - t125 * parameters[XY4];
-    const puma560_real_t t127 = t36 - t34;
-    const puma560_real_t t128 = t35 * t35;
+    const puma560_real_t t127 = t36 - t34; /* link j5: motion */
+    const puma560_real_t t128 = t35 * t35; /* link j4: motion */
     const puma560_real_t t129 = t20 * t20;
+    /* link j4: force and moment */
     const puma560_real_t t130 = (t129 - t128) * parameters[YZ4] + (t126 + t127 * parameters[XZ4])
         + (t97 * parameters[MY4] - t99 * parameters[MZ4]);
-    const puma560_real_t t131 = t130 - (t24 * t117 + t25 * t124);
+    const puma560_real_t t131 = t130 - (t24 * t117 + t25 * t124); /* link j5: what it passes on */
+    /* link j5: force and moment */
     const puma560_real_t t132 = t28 * (parameters[XX5] - parameters[YY5]) + t23 * parameters[ZZ5]
         + t59 * parameters[YZ5];
     const puma560_real_t t133 = (t122 - t114) * parameters[XY5] + (t132 - t42 * parameters[XZ5])
         + (t102 * parameters[MX5] + t98 * parameters[MY5]);
-    const puma560_real_t t134 = t133 + (t30 * t103 + t47 * t110);
+    const puma560_real_t t134 = t133 + (t30 * t103 + t47 * t110); /* link j6: what it passes on */
+    /* link j4: force and moment */
     const puma560_real_t t135 = t21 * (parameters[XX4] - parameters[ZZ4]) + t22 * parameters[YY4]
         + t41 * parameters[XY4];
-    const puma560_real_t t136 = t19 * t19;
+    const puma560_real_t t136 = t19 * t19; /* link j4: motion */
+    /* link j4: force and moment */
     const puma560_real_t t137 = (t136 - t129) * parameters[XZ4] + (t135 - t37 * parameters[YZ4])
         + (t92 * parameters[MZ4] - t97 * parameters[MX4]);
-    const puma560_real_t t138 = t137 + t134;
-    const puma560_real_t t139 = t53 * parameters[MZ6];
+    const puma560_real_t t138 = t137 + t134; /* link j5: what it passes on */
+    const puma560_real_t t139 = t53 * parameters[MZ6]; /* link j6: force and moment */
     const puma560_real_t t140 = t108 * parameters[M6];
     const puma560_real_t t141 = t140 + ((t65 + t66) * parameters[MX6] - t106 * parameters[MY6] + t139);
     const puma560_real_t t142 = t48 * parameters[MZ6];
     const puma560_real_t t143 = t100 * parameters[M6];
     const puma560_real_t t144 = t64 * parameters[MX6] - (t107 + t66) * parameters[MY6] + t142 - t143;
+    /* link j5: force and moment */
     const puma560_real_t t145 = (t114 + t115) * parameters[MX5] + t29 * parameters[MY5]
         - t59 * parameters[MZ5];
+    /* link j6: what it passes on */
     const puma560_real_t t146 = t98 * parameters[M5] + t145 + (t47 * t141 + t30 * t144);
-    const puma560_real_t t147 = t107 + t65;
+    const puma560_real_t t147 = t107 + t65; /* link j6: columns */
+    /* link j6: force and moment */
     const puma560_real_t t148 = t102 * parameters[M6] - (t147 * parameters[MZ6] + (t104 * parameters[MY6]
         - t57 * parameters[MX6]));
+    /* link j5: force and moment */
     const puma560_real_t t149 = (t122 + t115) * parameters[MY5] - t113 * parameters[MX5]
         - t42 * parameters[MZ5];
-    const puma560_real_t t150 = t102 * parameters[M5] - t149 + t148;
+    const puma560_real_t t150 = t102 * parameters[M5] - t149 + t148; /* link j6: what it passes on */
+    /* link j4: force and moment */
     const puma560_real_t t151 = (t128 + t129) * parameters[MX4] + t37 * parameters[MY4]
         + t18 * parameters[MZ4];
+    /* link j5: what it passes on */
     const puma560_real_t t152 = t92 * parameters[M4] + t151 + (t24 * t146 + t25 * t150);
-    const puma560_real_t t153 = t122 + t114;
+    const puma560_real_t t153 = t122 + t114; /* link j6: motion */
+    /* link j5: force and moment */
     const puma560_real_t t154 = t153 * parameters[MZ5] + (t46 * parameters[MY5] - t111 * parameters[MX5])
         - t99 * parameters[M5];
+    /* link j4: force and moment */
     const puma560_real_t t155 = (t136 + t129) * parameters[MY4] + t127 * parameters[MX4]
         - t38 * parameters[MZ4];
+    /* link j5: what it passes on */
     const puma560_real_t t156 = t154 - (t30 * t141 - t47 * t144) - (t99 * parameters[M4] + t155);
-    const puma560_real_t t157 = t17 * t152 - t11 * t156;
+    const puma560_real_t t157 = t17 * t152 - t11 * t156; /* link j4: what it passes on */
+    /* link j3: force and moment */
     const puma560_real_t t158 = t14 * (parameters[YY3] - parameters[ZZ3]) - t15 * parameters[XX3]
         - t84 * parameters[XY3];
     const puma560_real_t t159 = t90 * parameters[MY3] + t96 * parameters[MZ3] + ((t67 - t68) * parameters[YZ3]
         - (t158 + t93 * parameters[XZ3]));
+    /* link j4: what it passes on */
     const puma560_real_t t160 = t159 + (t17 * t138 - t11 * t131 + PUMA560_C(0.4318) * t157);
+    /* link j4: force and moment */
     const puma560_real_t t161 = t36 * (parameters[YY4] - parameters[XX4]) - t34 * parameters[ZZ4]
         + t18 * parameters[YZ4];
     const puma560_real_t t162 = (t128 - t136) * parameters[XY4] + (t161 + t38 * parameters[XZ4])
         + (t99 * parameters[MX4] - t92 * parameters[MY4]);
-    const puma560_real_t t163 = t162 + (t24 * t124 - t25 * t117);
+    const puma560_real_t t163 = t162 + (t24 * t124 - t25 * t117); /* link j5: what it passes on */
+    /* link j3: force and moment */
     const puma560_real_t t164 = t32 * (parameters[XX3] - parameters[ZZ3]) - t33 * parameters[YY3]
         - t16 * parameters[XY3];
     const puma560_real_t t165 = t90 * parameters[MX3] - t82 * parameters[MZ3] + ((t94 - t68) * parameters[XZ3]
         + (t164 - t10 * parameters[YZ3]));
-    const puma560_real_t t166 = t165 + (t163 + PUMA560_C(0.0203) * t157);
+    const puma560_real_t t166 = t165 + (t163 + PUMA560_C(0.0203) * t157); /* link j4: what it passes on */
     const puma560_real_t t167 = t11 * t152 + t17 * t156;
+    /* link j3: force and moment */
     const puma560_real_t t168 = t69 * parameters[MX3] + t10 * parameters[MY3] - t31 * parameters[MZ3]
         - t82 * parameters[M3];
-    const puma560_real_t t169 = t168 + t167;
-    const puma560_real_t t170 = t136 + t128;
+    const puma560_real_t t169 = t168 + t167; /* link j4: what it passes on */
+    const puma560_real_t t170 = t136 + t128; /* link j5: motion */
+    /* link j4: force and moment */
     const puma560_real_t t171 = t97 * parameters[M4] + (t170 * parameters[MZ4] + (t125 * parameters[MX4]
         + t41 * parameters[MY4]));
-    const puma560_real_t t172 = t171 + (t25 * t146 - t24 * t150);
+    const puma560_real_t t172 = t171 + (t25 * t146 - t24 * t150); /* link j5: what it passes on */
+    /* link j3: force and moment */
     const puma560_real_t t173 = t96 * parameters[M3] + (t95 * parameters[MY3] + t93 * parameters[MX3]
         - t12 * parameters[MZ3]);
-    const puma560_real_t t174 = t173 + t172;
-    const puma560_real_t t175 = t3 * t169 + t1 * t174;
-    const puma560_real_t t176 = dq[1] * t70;
+    const puma560_real_t t174 = t173 + t172; /* link j4: what it passes on */
+    const puma560_real_t t175 = t3 * t169 + t1 * t174; /* link j3: what it passes on */
+    const puma560_real_t t176 = dq[1] * t70; /* link j2: motion */
     const puma560_real_t t177 = t79 + t176;
+    /* link j2: force and moment */
     const puma560_real_t t178 = t176 * (parameters[YY2] - parameters[ZZ2]) - t177 * parameters[XX2]
         + t89 * parameters[XY2];
     const puma560_real_t t179 = t80 * parameters[MZ2] + ((t71 - t72) * parameters[YZ2] + (t178
         + t78 * parameters[XZ2]));
+    /* link j3: what it passes on */
     const puma560_real_t t180 = t179 + (t1 * t160 + t3 * t166 + PUMA560_C(0.1254) * t175);
-    const puma560_real_t t181 = t94 + t67;
+    const puma560_real_t t181 = t94 + t67; /* link j4: motion */
+    /* link j3: force and moment */
     const puma560_real_t t182 = t90 * parameters[M3] + (t16 * parameters[MY3] - t84 * parameters[MX3]
         - t181 * parameters[MZ3]);
+    /* link j3: what it passes on */
     const puma560_real_t t183 = PUMA560_C(0.1254) * (t1 * t169 - t3 * t174) + PUMA560_C(0.4318) * (t182
         + t157);
+    /* link j2: force and moment */
     const puma560_real_t t184 = t87 * (parameters[XX2] - parameters[ZZ2]) + t88 * parameters[YY2] + (t176
         + t177) * parameters[XY2];
     const puma560_real_t t185 = (t85 - t72) * parameters[XZ2] + (t184 + (t77 - ddq[1]) * parameters[YZ2]);
+    /* link j3: what it passes on */
     const puma560_real_t t186 = t185 - t74 * parameters[MZ2] + (t1 * t166 - t3 * t160 + t183);
     const puma560_real_t t187 = PUMA560_C(0.06944177768728742) * (t0 * t180 - t2 * t186
         - ddq[0] * parameters[ZZ1]);
-    const puma560_real_t t188 = puma560_sign(dq[0]);
+    const puma560_real_t t188 = puma560_sign(dq[0]); /* joint j1: coulomb_friction */
     const puma560_real_t t189 = PUMA560_C(-62.6111) * dq[0] * parameters[FV1] - t188 * parameters[FC1]
         + PUMA560_C(-62.6111) * ddq[0] * parameters[IA1];
     input[0] = PUMA560_C(4.3478260869565215) * t189 + t187;
+    /* link j4: what it passes on */
     const puma560_real_t t190 = t17 * t131 + t11 * t138 + (PUMA560_C(-0.0203) * t172
         + PUMA560_C(0.4318) * t167);
+    /* link j3: force and moment */
     const puma560_real_t t191 = t8 * (parameters[XX3] - parameters[YY3]) + t9 * parameters[ZZ3]
         + t31 * parameters[YZ3];
     const puma560_real_t t192 = (t94 - t67) * parameters[XY3] + (t191 - t12 * parameters[XZ3])
         - (t96 * parameters[MX3] + t82 * parameters[MY3]);
-    const puma560_real_t t193 = t192 + t190;
+    const puma560_real_t t193 = t192 + t190; /* link j4: what it passes on */
+    /* link j2: force and moment */
     const puma560_real_t t194 = t77 * (parameters[YY2] - parameters[XX2]) + ddq[1] * parameters[ZZ2]
         - t73 * parameters[YZ2];
     const puma560_real_t t195 = (t85 - t71) * parameters[XY2] + (t194 - t79 * parameters[XZ2])
         - (t80 * parameters[MX2] + t74 * parameters[MY2]);
-    const puma560_real_t t196 = puma560_sign(dq[1]);
+    const puma560_real_t t196 = puma560_sign(dq[1]); /* joint j2: coulomb_friction */
     const puma560_real_t t197 = PUMA560_C(107.815) * dq[1] * parameters[FV2] + t196 * parameters[FC2]
         + PUMA560_C(107.815) * ddq[1] * parameters[IA2];
     const puma560_real_t t198 = PUMA560_C(4.3478260869565215) * t197 + PUMA560_C(0.04032672714331514) * (t195
         + (t193 + PUMA560_C(-0.4318) * t175));
     input[1] = t198;
-    const puma560_real_t t199 = puma560_sign(dq[2]);
+    const puma560_real_t t199 = puma560_sign(dq[2]); /* joint j3: coulomb_friction */
     const puma560_real_t t200 = PUMA560_C(-53.7063) * dq[2] * parameters[FV3] - t199 * parameters[FC3]
         + PUMA560_C(-53.7063) * ddq[2] * parameters[IA3];
     input[2] = PUMA560_C(4.3478260869565215) * t200 + PUMA560_C(-0.08095560645504385) * t193;
-    const puma560_real_t t201 = puma560_sign(dq[3]);
+    const puma560_real_t t201 = puma560_sign(dq[3]); /* joint j4: coulomb_friction */
     const puma560_real_t t202 = PUMA560_C(76.0364) * dq[3] * parameters[FV4] + t201 * parameters[FC4]
         + PUMA560_C(76.0364) * ddq[3] * parameters[IA4];
     input[3] = PUMA560_C(14.285714285714285) * t202 + PUMA560_C(-0.18787994020908783) * t163;
-    const puma560_real_t t203 = puma560_sign(dq[4]);
+    const puma560_real_t t203 = puma560_sign(dq[4]); /* joint j5: coulomb_friction */
     const puma560_real_t t204 = PUMA560_C(71.923) * dq[4] * parameters[FV5] + t203 * parameters[FC5]
         + PUMA560_C(71.923) * ddq[4] * parameters[IA5];
     input[4] = PUMA560_C(14.285714285714285) * t204 + PUMA560_C(0.19862511694053758) * t134;
-    const puma560_real_t t205 = puma560_sign(dq[5]);
+    const puma560_real_t t205 = puma560_sign(dq[5]); /* joint j6: coulomb_friction */
     const puma560_real_t t206 = PUMA560_C(76.686) * dq[5] * parameters[FV6] + t205 * parameters[FC6]
         + PUMA560_C(76.686) * ddq[5] * parameters[IA6];
     input[5] = PUMA560_C(14.285714285714285) * t206 + PUMA560_C(-0.1862884266452062) * t120;
@@ -416,6 +458,7 @@ int puma560_inverse_dynamics_derivatives_standard(
     const puma560_real_t t214 = t50 * t213 + t54 * parameters[XZ6];
     const puma560_real_t t215 = parameters[YY6] - t212;
     const puma560_real_t t216 = t50 * t215 - t49 * parameters[YZ6];
+    /* link j6: inertia, momentum beyond */
     const puma560_real_t t217 = t30 * (t214 + t216) - t47 * (t209 + t211);
     const puma560_real_t t218 = t47 * t217;
     const puma560_real_t t219 = t27 * parameters[XZ5];
@@ -434,108 +477,127 @@ int puma560_inverse_dynamics_derivatives_standard(
     const puma560_real_t t232 = t49 * parameters[XY6] - t54 * t215;
     const puma560_real_t t233 = parameters[XX5] - t228;
     const puma560_real_t t234 = t26 * parameters[XZ5] - t43 * t233 + (t47 * t231 + t30 * t232);
+    /* link j5: inertia, momentum beyond */
     const puma560_real_t t235 = t24 * (t224 - t221) + t25 * (t230 + t234);
     const puma560_real_t t236 = t24 * t235;
     const puma560_real_t t237 = t35 * parameters[XZ4];
     const puma560_real_t t238 = t20 * parameters[XY4];
     const puma560_real_t t239 = t237 - t238 + (t224 - t236);
-    const puma560_real_t t240 = t219 + t223 + (t209 + t218);
+    const puma560_real_t t240 = t219 + t223 + (t209 + t218); /* link j6: inertia, momentum beyond */
     const puma560_real_t t241 = t19 * parameters[YZ4];
-    const puma560_real_t t242 = t240 - (t238 + t241);
-    const puma560_real_t t243 = t30 * t217;
+    const puma560_real_t t242 = t240 - (t238 + t241); /* link j5: inertia, momentum beyond */
+    const puma560_real_t t243 = t30 * t217; /* link j6: inertia, momentum beyond */
     const puma560_real_t t244 = parameters[ZZ5] - t228;
     const puma560_real_t t245 = t27 * t244 + t43 * parameters[YZ5] + (t216 - t243);
     const puma560_real_t t246 = t26 * t244 - t43 * parameters[XZ5] + (t47 * t232 - t30 * t231);
     const puma560_real_t t247 = PUMA560_C(0.5) * (parameters[ZZ4] + (parameters[XX4] + parameters[YY4]));
     const puma560_real_t t248 = parameters[YY4] - t247;
+    /* link j5: inertia, momentum beyond */
     const puma560_real_t t249 = t35 * parameters[YZ4] - t20 * t248 - (t24 * t245 - t25 * t246);
+    /* link j6: inertia, momentum beyond */
     const puma560_real_t t250 = t214 - t243 - (t26 * parameters[XY5] + t27 * t233);
     const puma560_real_t t251 = t26 * t229 - t27 * parameters[XY5] + (t30 * t226 - t47 * t227);
     const puma560_real_t t252 = parameters[XX4] - t247;
+    /* link j5: inertia, momentum beyond */
     const puma560_real_t t253 = t20 * t252 + t19 * parameters[XZ4] + (t25 * t251 - t24 * t250);
+    /* link j4: inertia, momentum beyond */
     const puma560_real_t t254 = t17 * (t249 + t253) - t11 * (t239 + t242);
     const puma560_real_t t255 = t11 * t254;
     const puma560_real_t t256 = t50 * parameters[MY6] - t49 * parameters[MZ6];
     const puma560_real_t t257 = t50 * parameters[MX6] - t54 * parameters[MZ6];
+    /* link j6: inertia, momentum beyond */
     const puma560_real_t t258 = t47 * t256 + t30 * t257 - (t27 * parameters[MZ5] + t43 * parameters[MY5]);
     const puma560_real_t t259 = t49 * parameters[MX6] - t54 * parameters[MY6];
     const puma560_real_t t260 = t26 * parameters[MZ5] - t43 * parameters[MX5] - t259;
+    /* link j5: inertia, momentum beyond */
     const puma560_real_t t261 = t20 * parameters[MY4] - t35 * parameters[MZ4] + (t24 * t258 + t25 * t260);
+    /* link j6: inertia, momentum beyond */
     const puma560_real_t t262 = t26 * parameters[MY5] + t27 * parameters[MX5] + (t47 * t257 - t30 * t256);
+    /* link j5: inertia, momentum beyond */
     const puma560_real_t t263 = t20 * parameters[MX4] + t19 * parameters[MZ4] + t262;
-    const puma560_real_t t264 = t11 * t261 + t17 * t263;
+    const puma560_real_t t264 = t11 * t261 + t17 * t263; /* link j4: inertia, momentum beyond */
     const puma560_real_t t265 = PUMA560_C(-0.0203) * t264;
+    /* link j6: column of the mass matrix */
     const puma560_real_t t266 = t47 * parameters[MY6] + t30 * parameters[MX6];
-    const puma560_real_t t267 = parameters[MZ5] - t266;
-    const puma560_real_t t268 = t267 - parameters[MY4];
+    const puma560_real_t t267 = parameters[MZ5] - t266; /* link j6: inertia of it and all beyond */
+    const puma560_real_t t268 = t267 - parameters[MY4]; /* link j5: inertia of it and all beyond */
+    /* link j6: column of the mass matrix */
     const puma560_real_t t269 = t47 * parameters[MX6] - t30 * parameters[MY6];
-    const puma560_real_t t270 = parameters[MX5] + t269;
+    const puma560_real_t t270 = parameters[MX5] + t269; /* link j6: inertia of it and all beyond */
     const puma560_real_t t271 = parameters[MY5] + parameters[MZ6];
-    const puma560_real_t t272 = t24 * t270 - t25 * t271;
-    const puma560_real_t t273 = parameters[MX4] + t272;
-    const puma560_real_t t274 = t17 * t268 + t11 * t273;
-    const puma560_real_t t275 = parameters[M5] + parameters[M6];
-    const puma560_real_t t276 = parameters[M4] + t275;
-    const puma560_real_t t277 = PUMA560_C(0.0203) * t276;
+    const puma560_real_t t272 = t24 * t270 - t25 * t271; /* link j5: column of the mass matrix */
+    const puma560_real_t t273 = parameters[MX4] + t272; /* link j5: inertia of it and all beyond */
+    const puma560_real_t t274 = t17 * t268 + t11 * t273; /* link j4: column of the mass matrix */
+    const puma560_real_t t275 = parameters[M5] + parameters[M6]; /* link j6: inertia of it and all beyond */
+    const puma560_real_t t276 = parameters[M4] + t275; /* link j5: inertia of it and all beyond */
+    const puma560_real_t t277 = PUMA560_C(0.0203) * t276; /* link j4: inertia of it and all beyond */
     const puma560_real_t t278 = t274 + t277;
-    const puma560_real_t t279 = PUMA560_C(0.4318) * t13;
-    const puma560_real_t t280 = t278 * t279;
+    const puma560_real_t t279 = PUMA560_C(0.4318) * t13; /* link j4: velocity of its origin */
+    const puma560_real_t t280 = t278 * t279; /* link j4: inertia, momentum beyond */
+    /* link j5: inertia, momentum beyond */
     const puma560_real_t t281 = t19 * parameters[MY4] + t35 * parameters[MX4] + (t25 * t258 - t24 * t260);
-    const puma560_real_t t282 = PUMA560_C(0.4318) * t281;
-    const puma560_real_t t283 = t11 * t268 - t17 * t273;
+    const puma560_real_t t282 = PUMA560_C(0.4318) * t281; /* link j4: inertia, momentum beyond */
+    const puma560_real_t t283 = t11 * t268 - t17 * t273; /* link j4: column of the mass matrix */
     const puma560_real_t t284 = PUMA560_C(0.4318) * t5 + PUMA560_C(0.0203) * t7;
-    const puma560_real_t t285 = t283 * t284;
-    const puma560_real_t t286 = t24 * t271 + t25 * t270;
-    const puma560_real_t t287 = parameters[MZ4] + t286;
-    const puma560_real_t t288 = PUMA560_C(0.4318) * t276;
+    const puma560_real_t t285 = t283 * t284; /* link j4: inertia, momentum beyond */
+    const puma560_real_t t286 = t24 * t271 + t25 * t270; /* link j5: column of the mass matrix */
+    const puma560_real_t t287 = parameters[MZ4] + t286; /* link j5: inertia of it and all beyond */
+    const puma560_real_t t288 = PUMA560_C(0.4318) * t276; /* link j4: inertia of it and all beyond */
     const puma560_real_t t289 = t287 + t288;
-    const puma560_real_t t290 = PUMA560_C(-0.0203) * t13;
-    const puma560_real_t t291 = t289 * t290;
+    const puma560_real_t t290 = PUMA560_C(-0.0203) * t13; /* link j4: velocity of its origin */
+    const puma560_real_t t291 = t289 * t290; /* link j4: inertia, momentum beyond */
     const puma560_real_t t292 = t265 - t282 - (t280 + t291 + t285);
     const puma560_real_t t293 = t7 * parameters[XZ3];
     const puma560_real_t t294 = t13 * parameters[XY3];
     const puma560_real_t t295 = t294 - t293 + (t242 + t255 + (t265 - t280) - t292);
-    const puma560_real_t t296 = t221 + t236 - (t237 + t241);
+    const puma560_real_t t296 = t221 + t236 - (t237 + t241); /* link j5: inertia, momentum beyond */
     const puma560_real_t t297 = t5 * parameters[YZ3];
+    /* link j4: inertia, momentum beyond */
     const puma560_real_t t298 = t294 + t297 + (t292 + (t296 + (t282 + t291)));
-    const puma560_real_t t299 = t25 * t235;
+    const puma560_real_t t299 = t25 * t235; /* link j5: inertia, momentum beyond */
     const puma560_real_t t300 = t247 - parameters[ZZ4];
     const puma560_real_t t301 = t230 - t299 - (t35 * t300 + t20 * parameters[YZ4]);
     const puma560_real_t t302 = t19 * t300 - t20 * parameters[XZ4] + (t25 * t250 + t24 * t251);
+    /* link j4: inertia, momentum beyond */
     const puma560_real_t t303 = t11 * t301 + t17 * t302 + (PUMA560_C(0.4318) * t264 + t289 * t279);
     const puma560_real_t t304 = PUMA560_C(0.5) * (parameters[ZZ3] + (parameters[XX3] + parameters[YY3]));
     const puma560_real_t t305 = t304 - parameters[YY3];
     const puma560_real_t t306 = t7 * parameters[YZ3] + t13 * t305 + t303;
+    /* link j5: inertia, momentum beyond */
     const puma560_real_t t307 = t19 * parameters[XY4] + t35 * t252 - (t234 - t299);
     const puma560_real_t t308 = t19 * t248 + t35 * parameters[XY4] + (t25 * t245 + t24 * t246);
+    /* link j4: inertia, momentum beyond */
     const puma560_real_t t309 = t11 * t307 - t17 * t308 - (PUMA560_C(0.0203) * t281 + t278 * t290);
     const puma560_real_t t310 = parameters[XX3] - t304;
     const puma560_real_t t311 = t13 * t310 + t5 * parameters[XZ3] - t309;
+    /* link j3: inertia, momentum beyond */
     const puma560_real_t t312 = t1 * (t295 + t298) + t3 * (t306 + t311);
     const puma560_real_t t313 = t1 * t312;
+    /* link j4: inertia, momentum beyond */
     const puma560_real_t t314 = t13 * parameters[MY3] - t7 * parameters[MZ3] + (t264 + t276 * t279);
     const puma560_real_t t315 = t281 + t276 * t290 - (t13 * parameters[MX3] + t5 * parameters[MZ3]);
-    const puma560_real_t t316 = t1 * t314 - t3 * t315;
+    const puma560_real_t t316 = t1 * t314 - t3 * t315; /* link j3: inertia, momentum beyond */
     const puma560_real_t t317 = PUMA560_C(-0.4318) * t316;
-    const puma560_real_t t318 = parameters[MX3] + t278;
+    const puma560_real_t t318 = parameters[MX3] + t278; /* link j4: inertia of it and all beyond */
     const puma560_real_t t319 = parameters[MY3] + t289;
-    const puma560_real_t t320 = t1 * t318 - t3 * t319;
-    const puma560_real_t t321 = parameters[M3] + t276;
-    const puma560_real_t t322 = PUMA560_C(0.4318) * t321;
+    const puma560_real_t t320 = t1 * t318 - t3 * t319; /* link j3: column of the mass matrix */
+    const puma560_real_t t321 = parameters[M3] + t276; /* link j4: inertia of it and all beyond */
+    const puma560_real_t t322 = PUMA560_C(0.4318) * t321; /* link j3: inertia of it and all beyond */
     const puma560_real_t t323 = t320 + t322;
-    const puma560_real_t t324 = PUMA560_C(0.1254) * t70;
-    const puma560_real_t t325 = t323 * t324;
-    const puma560_real_t t326 = t17 * t261 - t11 * t263;
+    const puma560_real_t t324 = PUMA560_C(0.1254) * t70; /* link j3: velocity of its origin */
+    const puma560_real_t t325 = t323 * t324; /* link j3: inertia, momentum beyond */
+    const puma560_real_t t326 = t17 * t261 - t11 * t263; /* link j4: inertia, momentum beyond */
     const puma560_real_t t327 = t326 - t276 * t284 - (t5 * parameters[MY3] + t7 * parameters[MX3]);
-    const puma560_real_t t328 = PUMA560_C(-0.1254) * t327;
-    const puma560_real_t t329 = t1 * t319 + t3 * t318;
+    const puma560_real_t t328 = PUMA560_C(-0.1254) * t327; /* link j3: inertia, momentum beyond */
+    const puma560_real_t t329 = t1 * t319 + t3 * t318; /* link j3: column of the mass matrix */
+    /* link j3: velocity of its origin */
     const puma560_real_t t330 = PUMA560_C(-0.4318) * dq[1] + PUMA560_C(-0.1254) * t76;
-    const puma560_real_t t331 = t329 * t330;
-    const puma560_real_t t332 = parameters[MZ3] + t283;
-    const puma560_real_t t333 = PUMA560_C(-0.1254) * t321;
+    const puma560_real_t t331 = t329 * t330; /* link j3: inertia, momentum beyond */
+    const puma560_real_t t332 = parameters[MZ3] + t283; /* link j4: inertia of it and all beyond */
+    const puma560_real_t t333 = PUMA560_C(-0.1254) * t321; /* link j3: inertia of it and all beyond */
     const puma560_real_t t334 = t333 - t332;
-    const puma560_real_t t335 = PUMA560_C(-0.4318) * t70;
-    const puma560_real_t t336 = t334 * t335;
+    const puma560_real_t t335 = PUMA560_C(-0.4318) * t70; /* link j3: velocity of its origin */
+    const puma560_real_t t336 = t334 * t335; /* link j3: inertia, momentum beyond */
     const puma560_real_t t337 = t328 - t317 + (t325 + t331 - t336);
     const puma560_real_t t338 = t70 * parameters[XZ2];
     const puma560_real_t t339 = dq[1] * parameters[XY2];
@@ -550,101 +612,124 @@ int puma560_inverse_dynamics_derivatives_standard(
     const puma560_real_t t348 = t344 - parameters[XX2];
     const puma560_real_t t349 = dq[1] * t348 - t76 * parameters[XZ2] + (t343 - t311
         + (PUMA560_C(-0.4318) * t347 - t323 * t330));
+    /* link j2: inertia, momentum beyond */
     const puma560_real_t t350 = t2 * (t2 * (t342 - t340) + t0 * (t346 + t349));
     input_by_dq[0] = PUMA560_C(-272.2221739130435) * parameters[FV1] + PUMA560_C(0.13888355537457484) * (t340
         + t350);
-    const puma560_real_t t351 = t17 * t254;
+    const puma560_real_t t351 = t17 * t254; /* link j4: inertia, momentum beyond */
     const puma560_real_t t352 = t5 * parameters[XY3] + t7 * t310 + (t253 - t351 - (PUMA560_C(-0.0203) * t326
         + t278 * t284));
     const puma560_real_t t353 = t11 * t302 - t17 * t301 + (PUMA560_C(-0.4318) * t326 + t289 * t284);
     const puma560_real_t t354 = t5 * t305 - t7 * parameters[XY3] + t353;
+    /* link j3: inertia, momentum beyond */
     const puma560_real_t t355 = t1 * t352 + t3 * t354 + (PUMA560_C(0.4318) * t327 - t323 * t335);
+    /* link j2: derivatives */
     const puma560_real_t t356 = PUMA560_C(2.0) * (t76 * parameters[XY2] + t70 * t348 + t355);
+    /* link j3: inertia, momentum beyond */
     const puma560_real_t t357 = t70 * parameters[XY2] - t76 * t345 - (t3 * t352 - t1 * t354 - t329 * t335);
-    const puma560_real_t t358 = PUMA560_C(2.0) * t357;
+    const puma560_real_t t358 = PUMA560_C(2.0) * t357; /* link j2: derivatives */
     input_by_dq[6] = PUMA560_C(0.04032672714331514) * (t0 * t356 - t2 * t358);
-    const puma560_real_t t359 = PUMA560_C(2.0) * t352;
+    const puma560_real_t t359 = PUMA560_C(2.0) * t352; /* link j3: derivatives */
     const puma560_real_t t360 = PUMA560_C(-2.0) * t354;
-    const puma560_real_t t361 = PUMA560_C(-0.8636) * t70;
-    const puma560_real_t t362 = t3 * t360 - t1 * t359 + t320 * t361;
+    const puma560_real_t t361 = PUMA560_C(-0.8636) * t70; /* link j6: derivatives */
+    const puma560_real_t t362 = t3 * t360 - t1 * t359 + t320 * t361; /* link j3: derivatives */
     const puma560_real_t t363 = t3 * t359 + t1 * t360 - t329 * t361;
     input_by_dq[12] = PUMA560_C(0.08095560645504385) * (t0 * t362 - t2 * t363);
-    const puma560_real_t t364 = PUMA560_C(2.0) * t307;
+    const puma560_real_t t364 = PUMA560_C(2.0) * t307; /* link j4: derivatives */
     const puma560_real_t t365 = PUMA560_C(2.0) * t308;
-    const puma560_real_t t366 = PUMA560_C(0.0406) * t13;
-    const puma560_real_t t367 = t11 * t364 - t17 * t365 + t274 * t366;
+    const puma560_real_t t366 = PUMA560_C(0.0406) * t13; /* link j6: derivatives */
+    const puma560_real_t t367 = t11 * t364 - t17 * t365 + t274 * t366; /* link j4: derivatives */
     const puma560_real_t t368 = PUMA560_C(2.0) * t296;
-    const puma560_real_t t369 = PUMA560_C(2.0) * t284;
+    const puma560_real_t t369 = PUMA560_C(2.0) * t284; /* link j6: derivatives */
     const puma560_real_t t370 = PUMA560_C(0.8636) * t13;
-    const puma560_real_t t371 = t368 - (t283 * t369 + t274 * t370);
-    const puma560_real_t t372 = PUMA560_C(2.0) * t330;
-    const puma560_real_t t373 = t3 * t283;
+    const puma560_real_t t371 = t368 - (t283 * t369 + t274 * t370); /* link j4: derivatives */
+    const puma560_real_t t372 = PUMA560_C(2.0) * t330; /* link j6: derivatives */
+    const puma560_real_t t373 = t3 * t283; /* link j4: column of the mass matrix */
+    /* link j4: derivatives */
     const puma560_real_t t374 = t1 * t367 + t3 * t371 - (t274 * t372 + t373 * t361);
-    const puma560_real_t t375 = t1 * t283;
-    const puma560_real_t t376 = PUMA560_C(0.2508) * t70;
+    const puma560_real_t t375 = t1 * t283; /* link j4: column of the mass matrix */
+    const puma560_real_t t376 = PUMA560_C(0.2508) * t70; /* link j6: derivatives */
+    /* link j4: derivatives */
     const puma560_real_t t377 = t3 * t367 - t1 * t371 + (t375 * t361 + t274 * t376);
     input_by_dq[18] = PUMA560_C(0.18787994020908783) * (t0 * t374 + t2 * t377);
-    const puma560_real_t t378 = PUMA560_C(2.0) * t250;
+    const puma560_real_t t378 = PUMA560_C(2.0) * t250; /* link j5: derivatives */
     const puma560_real_t t379 = PUMA560_C(2.0) * t251;
     const puma560_real_t t380 = t25 * t379 - t24 * t378;
     const puma560_real_t t381 = PUMA560_C(-2.0) * t240;
-    const puma560_real_t t382 = t17 * t286;
+    const puma560_real_t t382 = t17 * t286; /* link j5: column of the mass matrix */
+    /* link j5: derivatives */
     const puma560_real_t t383 = t11 * t380 - t17 * t381 - (t382 * t366 + t272 * t369);
     const puma560_real_t t384 = t25 * t378 + t24 * t379;
-    const puma560_real_t t385 = t11 * t286;
-    const puma560_real_t t386 = t384 + (t385 * t369 + t382 * t370);
-    const puma560_real_t t387 = t1 * t272 - t3 * t385;
+    const puma560_real_t t385 = t11 * t286; /* link j5: column of the mass matrix */
+    const puma560_real_t t386 = t384 + (t385 * t369 + t382 * t370); /* link j5: derivatives */
+    const puma560_real_t t387 = t1 * t272 - t3 * t385; /* link j5: column of the mass matrix */
+    /* link j5: derivatives */
     const puma560_real_t t388 = t1 * t383 + t3 * t386 + (t382 * t372 - t387 * t361);
-    const puma560_real_t t389 = t1 * t385 + t3 * t272;
+    const puma560_real_t t389 = t1 * t385 + t3 * t272; /* link j5: column of the mass matrix */
+    /* link j5: derivatives */
     const puma560_real_t t390 = t3 * t383 - t1 * t386 - (t389 * t361 + t382 * t376);
     input_by_dq[24] = PUMA560_C(0.19862511694053758) * (t0 * t388 + t2 * t390);
-    const puma560_real_t t391 = PUMA560_C(2.0) * t231;
+    const puma560_real_t t391 = PUMA560_C(2.0) * t231; /* link j6: derivatives */
     const puma560_real_t t392 = PUMA560_C(2.0) * t232;
     const puma560_real_t t393 = t47 * t391 + t30 * t392;
     const puma560_real_t t394 = PUMA560_C(2.0) * t222;
     const puma560_real_t t395 = t25 * t394 - t24 * t393;
     const puma560_real_t t396 = t47 * t392 - t30 * t391;
-    const puma560_real_t t397 = t24 * t266;
+    const puma560_real_t t397 = t24 * t266; /* link j6: column of the mass matrix */
     const puma560_real_t t398 = t11 * t269 - t17 * t397;
     const puma560_real_t t399 = t25 * t266;
+    /* link j6: derivatives */
     const puma560_real_t t400 = t11 * t395 - t17 * t396 + (t398 * t366 + t399 * t369);
     const puma560_real_t t401 = t25 * t393 + t24 * t394;
-    const puma560_real_t t402 = t11 * t397 + t17 * t269;
-    const puma560_real_t t403 = t401 + (t402 * t369 - t398 * t370);
-    const puma560_real_t t404 = t3 * t402 + t1 * t399;
+    const puma560_real_t t402 = t11 * t397 + t17 * t269; /* link j6: column of the mass matrix */
+    const puma560_real_t t403 = t401 + (t402 * t369 - t398 * t370); /* link j6: derivatives */
+    const puma560_real_t t404 = t3 * t402 + t1 * t399; /* link j6: column of the mass matrix */
+    /* link j6: derivatives */
     const puma560_real_t t405 = t1 * t400 + t3 * t403 + (t404 * t361 - t398 * t372);
-    const puma560_real_t t406 = t1 * t402 - t3 * t399;
+    const puma560_real_t t406 = t1 * t402 - t3 * t399; /* link j6: column of the mass matrix */
+    /* link j6: derivatives */
     const puma560_real_t t407 = t3 * t400 - t1 * t403 + (t398 * t376 - t406 * t361);
     input_by_dq[30] = PUMA560_C(0.1862884266452062) * (t0 * t405 + t2 * t407);
+    /* link j6: inertia of it and all beyond */
     const puma560_real_t t408 = t47 * t118 + parameters[XY6] * (PUMA560_C(2.0) * t30);
     const puma560_real_t t409 = t47 * t408;
     const puma560_real_t t410 = parameters[XX5] + (parameters[YY6] - t409);
     const puma560_real_t t411 = parameters[YY5] + parameters[ZZ6];
+    /* link j6: column of the mass matrix */
     const puma560_real_t t412 = t47 * parameters[XZ6] - t30 * parameters[YZ6];
-    const puma560_real_t t413 = parameters[XY5] + t412;
+    const puma560_real_t t413 = parameters[XY5] + t412; /* link j6: inertia of it and all beyond */
+    /* link j5: inertia of it and all beyond */
     const puma560_real_t t414 = t24 * (t411 - t410) + t413 * (PUMA560_C(2.0) * t25);
     const puma560_real_t t415 = t24 * t414;
     const puma560_real_t t416 = parameters[XX4] + (t411 - t415);
+    /* link j6: inertia of it and all beyond */
     const puma560_real_t t417 = parameters[ZZ5] + (parameters[XX6] + t409);
-    const puma560_real_t t418 = parameters[YY4] + t417;
+    const puma560_real_t t418 = parameters[YY4] + t417; /* link j5: inertia of it and all beyond */
+    /* link j6: inertia of it and all beyond */
     const puma560_real_t t419 = parameters[XZ5] + (t30 * t408 - parameters[XY6]);
+    /* link j6: column of the mass matrix */
     const puma560_real_t t420 = t30 * parameters[XZ6] + t47 * parameters[YZ6];
-    const puma560_real_t t421 = parameters[YZ5] - t420;
-    const puma560_real_t t422 = t25 * t421 - t24 * t419;
-    const puma560_real_t t423 = parameters[XY4] + t422;
+    const puma560_real_t t421 = parameters[YZ5] - t420; /* link j6: inertia of it and all beyond */
+    const puma560_real_t t422 = t25 * t421 - t24 * t419; /* link j5: column of the mass matrix */
+    const puma560_real_t t423 = parameters[XY4] + t422; /* link j5: inertia of it and all beyond */
+    /* link j4: inertia of it and all beyond */
     const puma560_real_t t424 = t11 * (t418 - t416) + t423 * (PUMA560_C(2.0) * t17);
     const puma560_real_t t425 = t11 * t424;
     const puma560_real_t t426 = PUMA560_C(0.4318) * (t288 + PUMA560_C(2.0) * t287);
     const puma560_real_t t427 = parameters[XX3] + (t418 - t425 + t426);
-    const puma560_real_t t428 = parameters[ZZ4] + (t410 + t415);
+    const puma560_real_t t428 = parameters[ZZ4] + (t410 + t415); /* link j5: inertia of it and all beyond */
+    /* link j4: inertia of it and all beyond */
     const puma560_real_t t429 = PUMA560_C(0.0203) * (t277 + PUMA560_C(2.0) * t274);
     const puma560_real_t t430 = parameters[YY3] + (t428 + t429);
+    /* link j5: inertia of it and all beyond */
     const puma560_real_t t431 = parameters[XZ4] + (t413 - t25 * t414);
-    const puma560_real_t t432 = t25 * t419 + t24 * t421;
-    const puma560_real_t t433 = parameters[YZ4] - t432;
-    const puma560_real_t t434 = t11 * t431 - t17 * t433;
+    const puma560_real_t t432 = t25 * t419 + t24 * t421; /* link j5: column of the mass matrix */
+    const puma560_real_t t433 = parameters[YZ4] - t432; /* link j5: inertia of it and all beyond */
+    const puma560_real_t t434 = t11 * t431 - t17 * t433; /* link j4: column of the mass matrix */
+    /* link j4: inertia of it and all beyond */
     const puma560_real_t t435 = parameters[XY3] + (t434 + (PUMA560_C(-0.0203) * t287
         + PUMA560_C(-0.4318) * t278));
+    /* link j3: inertia of it and all beyond */
     const puma560_real_t t436 = t1 * (t430 - t427) + t435 * (PUMA560_C(2.0) * t3);
     const puma560_real_t t437 = t1 * t436;
     const puma560_real_t t438 = PUMA560_C(0.1254) * (t333 + PUMA560_C(-2.0) * t332);
@@ -652,36 +737,41 @@ int puma560_inverse_dynamics_derivatives_standard(
     const puma560_real_t t440 = PUMA560_C(0.4318) * (t322 - PUMA560_C(-2.0) * t320);
     const puma560_real_t t441 = parameters[YY2] + (t427 + t437 + (t440 - t438));
     const puma560_real_t t442 = t3 * t436 - t435 + PUMA560_C(0.4318) * t329 - parameters[XY2];
+    /* link j2: inertia of it and all beyond */
     const puma560_real_t t443 = t2 * (t2 * (t439 + t441) + t442 * (PUMA560_C(-2.0) * t0));
     input_by_ddq[0] = PUMA560_C(-272.2221739130435) * parameters[IA1] + PUMA560_C(0.06944177768728742) * (t439
         - t443 - parameters[ZZ1]);
+    /* link j4: inertia of it and all beyond */
     const puma560_real_t t444 = parameters[XZ3] - (t423 - t17 * t424 - PUMA560_C(-0.0203) * t283);
+    /* link j4: column of the mass matrix */
     const puma560_real_t t445 = PUMA560_C(-0.4318) * t283 - (t17 * t431 + t11 * t433);
-    const puma560_real_t t446 = parameters[YZ3] + t445;
-    const puma560_real_t t447 = t1 * t444 - t3 * t446;
+    const puma560_real_t t446 = parameters[YZ3] + t445; /* link j4: inertia of it and all beyond */
+    const puma560_real_t t447 = t1 * t444 - t3 * t446; /* link j3: column of the mass matrix */
+    /* link j3: inertia of it and all beyond */
     const puma560_real_t t448 = PUMA560_C(0.4318) * t332 + PUMA560_C(0.1254) * t323 - t447 - parameters[XZ2];
+    /* link j3: column of the mass matrix */
     const puma560_real_t t449 = t3 * t444 + t1 * t446 + PUMA560_C(-0.1254) * t329;
-    const puma560_real_t t450 = parameters[YZ2] + t449;
-    const puma560_real_t t451 = t2 * t450 - t0 * t448;
+    const puma560_real_t t450 = parameters[YZ2] + t449; /* link j3: inertia of it and all beyond */
+    const puma560_real_t t451 = t2 * t450 - t0 * t448; /* link j2: column of the mass matrix */
     input_by_ddq[6] = PUMA560_C(-0.04032672714331514) * t451;
-    const puma560_real_t t452 = t447 + PUMA560_C(-0.1254) * t320;
+    const puma560_real_t t452 = t447 + PUMA560_C(-0.1254) * t320; /* link j3: column of the mass matrix */
     const puma560_real_t t453 = t0 * t452 + t2 * t449;
     input_by_ddq[12] = PUMA560_C(0.08095560645504385) * t453;
-    const puma560_real_t t454 = PUMA560_C(-0.4318) * t274;
+    const puma560_real_t t454 = PUMA560_C(-0.4318) * t274; /* link j4: column of the mass matrix */
     const puma560_real_t t455 = t434 + t454;
     const puma560_real_t t456 = t428 + PUMA560_C(0.0203) * t274;
     const puma560_real_t t457 = t3 * t456 - t1 * t455 + PUMA560_C(0.1254) * t373;
     const puma560_real_t t458 = t3 * t455 + t1 * t456 + (PUMA560_C(0.1254) * t375 - t454);
     const puma560_real_t t459 = t2 * t458 - t0 * t457;
     input_by_ddq[18] = PUMA560_C(-0.18787994020908783) * t459;
-    const puma560_real_t t460 = PUMA560_C(0.4318) * t382;
+    const puma560_real_t t460 = PUMA560_C(0.4318) * t382; /* link j5: column of the mass matrix */
     const puma560_real_t t461 = t17 * t417 - t11 * t422 + t460;
     const puma560_real_t t462 = t432 + PUMA560_C(-0.0203) * t382;
     const puma560_real_t t463 = t3 * t462 - t1 * t461 + PUMA560_C(0.1254) * t387;
     const puma560_real_t t464 = t3 * t461 + t1 * t462 + (PUMA560_C(-0.1254) * t389 - t460);
     const puma560_real_t t465 = t2 * t464 - t0 * t463;
     input_by_ddq[24] = PUMA560_C(-0.19862511694053758) * t465;
-    const puma560_real_t t466 = t24 * t412 - t25 * parameters[ZZ6];
+    const puma560_real_t t466 = t24 * t412 - t25 * parameters[ZZ6]; /* link j6: column of the mass matrix */
     const puma560_real_t t467 = PUMA560_C(-0.4318) * t398;
     const puma560_real_t t468 = t11 * t466 - t17 * t420 + t467;
     const puma560_real_t t469 = t25 * t412 + t24 * parameters[ZZ6];
@@ -690,62 +780,80 @@ int puma560_inverse_dynamics_derivatives_standard(
     const puma560_real_t t472 = t3 * t470 - t1 * t468 + PUMA560_C(-0.1254) * t404;
     const puma560_real_t t473 = t2 * t471 - t0 * t472;
     input_by_ddq[30] = PUMA560_C(-0.1862884266452062) * t473;
-    const puma560_real_t t474 = PUMA560_C(-2.0) * t70;
+    const puma560_real_t t474 = PUMA560_C(-2.0) * t70; /* link j2: derivatives */
     const puma560_real_t t475 = PUMA560_C(2.0) * t76;
     const puma560_real_t t476 = t73 * t439 - t79 * t442 + t86 * t448 - (t340 * t474 + t346 * t475);
-    const puma560_real_t t477 = t334 - parameters[MZ2];
+    const puma560_real_t t477 = t334 - parameters[MZ2]; /* link j3: inertia of it and all beyond */
+    /* link j2: derivatives */
     const puma560_real_t t478 = t73 * t442 + t79 * t441 - t86 * t450 - (t349 * t474 + t342 * t475);
     const puma560_real_t t479 = t0 * (t186 + (t476 - t74 * t477)) + t2 * (t180 + (t478 + t80 * t477));
     input_by_q[1] = PUMA560_C(0.06944177768728742) * t479;
+    /* link j4: inertia of it and all beyond */
     const puma560_real_t t480 = parameters[ZZ3] + (t416 + t425 + (t429 + t426));
-    const puma560_real_t t481 = parameters[ZZ2] + (t480 + t440);
+    const puma560_real_t t481 = parameters[ZZ2] + (t480 + t440); /* link j3: inertia of it and all beyond */
+    /* link j2: derivatives */
     const puma560_real_t t482 = t73 * t448 + t79 * t450 - t86 * t481 + (t70 * t356 + t76 * t358);
     const puma560_real_t t483 = t80 * (parameters[MY2] + t329) - t74 * (parameters[MX2] + t323) + t482;
     input_by_q[7] = PUMA560_C(0.04032672714331514) * t483;
-    const puma560_real_t t484 = t480 + PUMA560_C(0.4318) * t320;
+    const puma560_real_t t484 = t480 + PUMA560_C(0.4318) * t320; /* link j3: column of the mass matrix */
+    /* link j3: derivatives */
     const puma560_real_t t485 = t70 * t362 + t76 * t363 + (t73 * t452 - t79 * t449 + t86 * t484);
     input_by_q[13] = PUMA560_C(0.08095560645504385) * (t485 + (t74 * t320 - t80 * t329));
-    const puma560_real_t t486 = t445 + PUMA560_C(0.4318) * t373;
+    const puma560_real_t t486 = t445 + PUMA560_C(0.4318) * t373; /* link j4: column of the mass matrix */
+    /* link j4: derivatives */
     const puma560_real_t t487 = t70 * t374 - t76 * t377 + (t73 * t457 + t79 * t458 - t86 * t486);
     input_by_q[19] = PUMA560_C(0.18787994020908783) * (t487 - (t80 * t375 + t74 * t373));
+    /* link j5: column of the mass matrix */
     const puma560_real_t t488 = t17 * t422 + t11 * t417 + (PUMA560_C(0.0203) * t272
         + PUMA560_C(0.4318) * t385);
     const puma560_real_t t489 = t488 + PUMA560_C(0.4318) * t387;
+    /* link j5: derivatives */
     const puma560_real_t t490 = t70 * t388 - t76 * t390 + (t73 * t463 + t79 * t464 - t86 * t489);
     input_by_q[25] = PUMA560_C(0.19862511694053758) * (t490 + (t80 * t389 - t74 * t387));
+    /* link j6: column of the mass matrix */
     const puma560_real_t t491 = PUMA560_C(-0.0203) * t399 + PUMA560_C(0.4318) * t402 - (t17 * t466
         + t11 * t420);
     const puma560_real_t t492 = t491 + PUMA560_C(-0.4318) * t404;
+    /* link j6: derivatives */
     const puma560_real_t t493 = t70 * t405 - t76 * t407 + (t73 * t472 + t79 * t471 - t86 * t492);
     input_by_q[31] = PUMA560_C(0.1862884266452062) * (t493 + (t80 * t406 + t74 * t404));
     const puma560_real_t t494 = parameters[ZZ3] - t304;
+    /* link j4: inertia, momentum beyond */
     const puma560_real_t t495 = t7 * t494 - t13 * parameters[YZ3] + (t351 - t249 + t283 * t279);
     const puma560_real_t t496 = t13 * parameters[XZ3] + t5 * t494 + (t17 * t307 + t11 * t308 + t283 * t290);
+    /* link j3: inertia, momentum beyond */
     const puma560_real_t t497 = t1 * t495 - t3 * t496 + (PUMA560_C(0.1254) * t316 - t334 * t324);
     const puma560_real_t t498 = parameters[ZZ2] - t344;
+    /* link j2: derivatives */
     const puma560_real_t t499 = PUMA560_C(2.0) * (t497 - (dq[1] * parameters[YZ2] + t70 * t498))
         - (t439 * t474 + t442 * t475);
+    /* link j3: inertia, momentum beyond */
     const puma560_real_t t500 = t3 * t495 + t1 * t496 + (PUMA560_C(0.1254) * t347 - t334 * t330);
+    /* link j2: derivatives */
     const puma560_real_t t501 = PUMA560_C(2.0) * (dq[1] * parameters[XZ2] + t76 * t498 + t500) + (t441 * t475
         - t442 * t474);
     input_by_dq[1] = PUMA560_C(0.06944177768728742) * (t0 * t499 + t2 * t501);
+    /* link j4: inertia, momentum beyond */
     const puma560_real_t t502 = t292 + (t239 + t255 + t285) - (t293 + t297);
+    /* link j2: derivatives */
     const puma560_real_t t503 = PUMA560_C(2.0) * (t338 - t341 + (t502 + (t328 - t336) - t337));
     const puma560_real_t t504 = PUMA560_C(0.04032672714331514) * (t503 + PUMA560_C(2.0) * (t70 * t448
         + t76 * t450));
     input_by_dq[7] = PUMA560_C(468.7608695652174) * parameters[FV2] + t504;
-    const puma560_real_t t505 = PUMA560_C(-2.0) * t502;
+    const puma560_real_t t505 = PUMA560_C(-2.0) * t502; /* link j3: derivatives */
     const puma560_real_t t506 = t505 + (t320 * t376 + t329 * t372) + PUMA560_C(2.0) * (t70 * t452
         - t76 * t449);
     input_by_dq[13] = PUMA560_C(0.08095560645504385) * t506;
-    const puma560_real_t t507 = t17 * t364 + t11 * t365 - t283 * t366;
+    const puma560_real_t t507 = t17 * t364 + t11 * t365 - t283 * t366; /* link j4: derivatives */
     const puma560_real_t t508 = t507 + (t375 * t372 - t373 * t376) + PUMA560_C(2.0) * (t70 * t457
         + t76 * t458);
     input_by_dq[19] = PUMA560_C(0.18787994020908783) * t508;
+    /* link j5: derivatives */
     const puma560_real_t t509 = t17 * t380 + t11 * t381 + (t385 * t366 - t272 * t370);
     const puma560_real_t t510 = t509 - (t387 * t376 + t389 * t372) + PUMA560_C(2.0) * (t70 * t463
         + t76 * t464);
     input_by_dq[25] = PUMA560_C(0.19862511694053758) * t510;
+    /* link j6: derivatives */
     const puma560_real_t t511 = t17 * t395 + t11 * t396 + (t399 * t370 + t402 * t366);
     const puma560_real_t t512 = t511 + (t404 * t376 - t406 * t372) + PUMA560_C(2.0) * (t70 * t472
         + t76 * t471);
@@ -756,7 +864,7 @@ int puma560_inverse_dynamics_derivatives_standard(
     input_by_ddq[19] = PUMA560_C(0.18787994020908783) * t486;
     input_by_ddq[25] = PUMA560_C(0.19862511694053758) * t489;
     input_by_ddq[31] = PUMA560_C(0.1862884266452062) * t492;
-    const puma560_real_t t513 = PUMA560_C(2.0) * t7;
+    const puma560_real_t t513 = PUMA560_C(2.0) * t7; /* link j3: derivatives */
     const puma560_real_t t514 = PUMA560_C(2.0) * t5;
     const puma560_real_t t515 = t306 * t514 - t295 * t513 + (t31 * t427 + t12 * t435 - t181 * t444);
     const puma560_real_t t516 = t166 + (t515 + t82 * t332);
@@ -778,12 +886,16 @@ int puma560_inverse_dynamics_derivatives_standard(
     input_by_q[8] = PUMA560_C(0.04032672714331514) * t530;
     const puma560_real_t t531 = PUMA560_C(0.08095560645504385) * (t7 * t359 + t5 * t360 - t528 - t529);
     input_by_q[14] = t531;
+    /* link j4: derivatives */
     const puma560_real_t t532 = t5 * t371 - t7 * t367 + (t31 * t455 + t12 * t456 - t181 * t445);
     input_by_q[20] = PUMA560_C(0.18787994020908783) * (t532 - t96 * t283);
+    /* link j5: derivatives */
     const puma560_real_t t533 = t5 * t386 - t7 * t383 + (t31 * t461 + t12 * t462 - t181 * t488);
     input_by_q[26] = PUMA560_C(0.19862511694053758) * (t533 + (t96 * t385 - t82 * t272));
+    /* link j6: derivatives */
     const puma560_real_t t534 = t5 * t403 - t7 * t400 + (t31 * t468 + t12 * t470 - t181 * t491);
     input_by_q[32] = PUMA560_C(0.1862884266452062) * (t534 + (t96 * t402 + t82 * t399));
+    /* link j3: derivatives */
     const puma560_real_t t535 = PUMA560_C(2.0) * t495 + (t427 * t513 + t435 * t514);
     const puma560_real_t t536 = PUMA560_C(2.0) * t496 + (t435 * t513 + t430 * t514);
     const puma560_real_t t537 = PUMA560_C(2.0) * t314 + t332 * t513;
@@ -815,7 +927,7 @@ int puma560_inverse_dynamics_derivatives_standard(
     input_by_ddq[20] = PUMA560_C(0.18787994020908783) * t445;
     input_by_ddq[26] = PUMA560_C(0.19862511694053758) * t488;
     input_by_ddq[32] = PUMA560_C(0.1862884266452062) * t491;
-    const puma560_real_t t548 = PUMA560_C(-2.0) * t35;
+    const puma560_real_t t548 = PUMA560_C(-2.0) * t35; /* link j4: derivatives */
     const puma560_real_t t549 = PUMA560_C(-2.0) * t19;
     const puma560_real_t t550 = t253 * t548 - t242 * t549 + (t18 * t423 - t38 * t418 + t170 * t433);
     const puma560_real_t t551 = t131 + (t550 + t99 * t287);
@@ -843,10 +955,13 @@ int puma560_inverse_dynamics_derivatives_standard(
     input_by_q[15] = PUMA560_C(-0.08095560645504385) * t569;
     const puma560_real_t t570 = PUMA560_C(0.18787994020908783) * (t562 + (t561 - (t35 * t364 + t19 * t365)));
     input_by_q[21] = t570;
+    /* link j5: derivatives */
     const puma560_real_t t571 = t18 * t422 - t38 * t417 - t170 * t432 - (t35 * t380 + t19 * t381);
     input_by_q[27] = PUMA560_C(0.19862511694053758) * (t571 + t99 * t286);
+    /* link j6: derivatives */
     const puma560_real_t t572 = t38 * t420 - t18 * t466 - t170 * t469 - (t35 * t395 + t19 * t396);
     input_by_q[33] = PUMA560_C(0.1862884266452062) * (t572 + (t99 * t397 + t92 * t269));
+    /* link j4: derivatives */
     const puma560_real_t t573 = PUMA560_C(2.0) * t301 - (t416 * t548 + t423 * t549);
     const puma560_real_t t574 = PUMA560_C(2.0) * t302 + (t423 * t548 + t418 * t549);
     const puma560_real_t t575 = PUMA560_C(2.0) * t263 + t287 * t549;
@@ -881,7 +996,7 @@ int puma560_inverse_dynamics_derivatives_standard(
         + PUMA560_C(0.18787994020908783) * t428;
     input_by_ddq[27] = PUMA560_C(0.19862511694053758) * t432;
     input_by_ddq[33] = PUMA560_C(0.1862884266452062) * t469;
-    const puma560_real_t t590 = PUMA560_C(2.0) * t27;
+    const puma560_real_t t590 = PUMA560_C(2.0) * t27; /* link j5: derivatives */
     const puma560_real_t t591 = PUMA560_C(2.0) * t26;
     const puma560_real_t t592 = t221 * t590 + t230 * t591 + (t59 * t410 + t42 * t413 - t153 * t419);
     const puma560_real_t t593 = t124 + (t592 - t98 * t267);
@@ -915,8 +1030,10 @@ int puma560_inverse_dynamics_derivatives_standard(
     input_by_q[22] = PUMA560_C(0.18787994020908783) * t609;
     const puma560_real_t t617 = PUMA560_C(0.19862511694053758) * (t598 + (t597 + (t27 * t378 + t26 * t379)));
     input_by_q[28] = t617;
+    /* link j6: derivatives */
     const puma560_real_t t618 = t27 * t393 + t26 * t394 + (t59 * t412 + t42 * parameters[ZZ6] + t153 * t420);
     input_by_q[34] = PUMA560_C(0.1862884266452062) * (t618 - t102 * t266);
+    /* link j5: derivatives */
     const puma560_real_t t619 = PUMA560_C(2.0) * t245 + (t410 * t590 + t413 * t591);
     const puma560_real_t t620 = PUMA560_C(2.0) * t246 + (t413 * t590 + t411 * t591);
     const puma560_real_t t621 = t24 * t619 - t25 * t620;
@@ -954,7 +1071,7 @@ int puma560_inverse_dynamics_derivatives_standard(
     input_by_ddq[28] = PUMA560_C(1027.4714285714285) * parameters[IA5]
         + PUMA560_C(0.19862511694053758) * t417;
     input_by_ddq[34] = PUMA560_C(-0.1862884266452062) * t420;
-    const puma560_real_t t640 = PUMA560_C(-2.0) * t49;
+    const puma560_real_t t640 = PUMA560_C(-2.0) * t49; /* link j6: derivatives */
     const puma560_real_t t641 = PUMA560_C(2.0) * t54;
     const puma560_real_t t642 = t209 * t640 + t216 * t641 - (t53 * parameters[XX6] - t48 * parameters[XY6]
         + t147 * parameters[XZ6]);

@@ -6,7 +6,7 @@
  * Arm puma560, description e8eb13fe224405b2.
  * SPDX-License-Identifier: 0BSD
  *
- * Operations: 636 (332 mul, 304 add, 0 neg), 10 trig, 6 other.
+ * Operations: 636 (332 mul, 304 add, 0 neg), 10 trig, 6 other calls (sign, select and the like).
  *
  * @param[in]   q           [6]   [rad]      joint coordinates; norm at most 10000
  * @param[in]   dq          [6]   [rad/s]    joint velocities; norm at most 100000
@@ -106,11 +106,11 @@
  */
 #include "puma560_private.h"
 
-#if PUMA560_GENERATION != 0xAC9DC6F4UL
+#if PUMA560_GENERATION != 0x0486C622UL
 #error "puma560.h and puma560_inverse_dynamics_standard.c are of different generations: generate the arm again"
 #endif
 
-int puma560_inverse_dynamics_standard(
+puma560_status_t puma560_inverse_dynamics_standard(
     const puma560_real_t q[PUMA560_N_JOINTS],
     const puma560_real_t dq[PUMA560_N_JOINTS],
     const puma560_real_t ddq[PUMA560_N_JOINTS],
@@ -121,7 +121,7 @@ int puma560_inverse_dynamics_standard(
         M2, XX3, XY3, XZ3, YY3, YZ3, ZZ3, MX3, MY3, MZ3, M3, XX4, XY4, XZ4, YY4, YZ4, ZZ4, MX4, MY4, MZ4, M4,
         XX5, XY5, XZ5, YY5, YZ5, ZZ5, MX5, MY5, MZ5, M5, XX6, XY6, XZ6, YY6, YZ6, ZZ6, MX6, MY6, MZ6, M6, FV1,
         FC1, IA1, FV2, FC2, IA2, FV3, FC3, IA3, FV4, FC4, IA4, FV5, FC5, IA5, FV6, FC6, IA6 };
-    int status = PUMA560_STATUS_OK;
+    puma560_status_t status = PUMA560_STATUS_OK;
 
     if (!puma560_within_joints(q, PUMA560_C(1.0e8))
         || !puma560_within_joints(dq, PUMA560_C(1.0e10))
@@ -144,44 +144,44 @@ int puma560_inverse_dynamics_standard(
     PUMA560_SINCOS(q[4], &t25, &t24);
     puma560_real_t t30, t47;
     PUMA560_SINCOS(q[5], &t30, &t47);
-    const puma560_real_t t4 = t0 * t1 + t2 * t3;
+    const puma560_real_t t4 = t0 * t1 + t2 * t3; /* link j3: motion */
     const puma560_real_t t5 = dq[0] * t4;
     const puma560_real_t t6 = t0 * t3 - t2 * t1;
     const puma560_real_t t7 = dq[0] * t6;
     const puma560_real_t t8 = t5 * t7;
     const puma560_real_t t9 = ddq[1] + ddq[2];
-    const puma560_real_t t10 = t9 + t8;
-    const puma560_real_t t12 = ddq[0] * t4;
+    const puma560_real_t t10 = t9 + t8; /* link j4: motion */
+    const puma560_real_t t12 = ddq[0] * t4; /* link j3: motion */
     const puma560_real_t t13 = dq[1] + dq[2];
     const puma560_real_t t14 = t7 * t13;
     const puma560_real_t t15 = t12 - t14;
-    const puma560_real_t t16 = t15 - t14;
+    const puma560_real_t t16 = t15 - t14; /* link j4: motion */
     const puma560_real_t t18 = t11 * t10 - t17 * t16;
     const puma560_real_t t19 = t11 * t5 + t17 * t13;
     const puma560_real_t t20 = dq[3] + t7;
     const puma560_real_t t21 = t19 * t20;
     const puma560_real_t t22 = t18 - t21;
-    const puma560_real_t t23 = ddq[4] + t22;
+    const puma560_real_t t23 = ddq[4] + t22; /* link j5: motion */
     const puma560_real_t t26 = t24 * t19 - t25 * t20;
     const puma560_real_t t27 = t25 * t19 + t24 * t20;
     const puma560_real_t t28 = t26 * t27;
-    const puma560_real_t t29 = t23 + t28;
-    const puma560_real_t t31 = ddq[0] * t6;
+    const puma560_real_t t29 = t23 + t28; /* link j6: motion */
+    const puma560_real_t t31 = ddq[0] * t6; /* link j3: motion */
     const puma560_real_t t32 = t5 * t13;
     const puma560_real_t t33 = t31 + t32;
-    const puma560_real_t t34 = ddq[3] + t33;
+    const puma560_real_t t34 = ddq[3] + t33; /* link j4: motion */
     const puma560_real_t t35 = t11 * t13 - t17 * t5;
     const puma560_real_t t36 = t19 * t35;
-    const puma560_real_t t37 = t36 - t34;
-    const puma560_real_t t38 = t17 * t10 + t11 * t16;
+    const puma560_real_t t37 = t36 - t34; /* link j5: motion */
+    const puma560_real_t t38 = t17 * t10 + t11 * t16; /* link j4: motion */
     const puma560_real_t t39 = t35 * t20;
     const puma560_real_t t40 = t38 + t39;
-    const puma560_real_t t41 = t39 + t40;
+    const puma560_real_t t41 = t39 + t40; /* link j5: motion */
     const puma560_real_t t42 = t25 * t37 + t24 * t41;
     const puma560_real_t t43 = dq[4] + t35;
     const puma560_real_t t44 = t27 * t43;
     const puma560_real_t t45 = t42 - t44;
-    const puma560_real_t t46 = t45 - t44;
+    const puma560_real_t t46 = t45 - t44; /* link j6: motion */
     const puma560_real_t t48 = t30 * t29 + t47 * t46;
     const puma560_real_t t49 = t47 * t43 - t30 * t26;
     const puma560_real_t t50 = dq[5] + t27;
@@ -191,201 +191,248 @@ int puma560_inverse_dynamics_standard(
     const puma560_real_t t54 = t47 * t26 + t30 * t43;
     const puma560_real_t t55 = t54 * t50;
     const puma560_real_t t56 = t53 + t55;
-    const puma560_real_t t57 = t55 + t56;
+    const puma560_real_t t57 = t55 + t56; /* link j6: columns */
+    /* link j6: force and moment */
     const puma560_real_t t58 = t52 * parameters[XX6] - t51 * (parameters[YY6] - parameters[ZZ6])
         - t57 * parameters[XY6];
-    const puma560_real_t t59 = t25 * t41 - t24 * t37;
+    const puma560_real_t t59 = t25 * t41 - t24 * t37; /* link j5: motion */
     const puma560_real_t t60 = t26 * t43;
     const puma560_real_t t61 = t59 + t60;
-    const puma560_real_t t62 = ddq[5] + t61;
+    const puma560_real_t t62 = ddq[5] + t61; /* link j6: motion */
     const puma560_real_t t63 = t54 * t49;
-    const puma560_real_t t64 = t62 + t63;
-    const puma560_real_t t65 = t49 * t49;
+    const puma560_real_t t64 = t62 + t63; /* link j6: columns */
+    const puma560_real_t t65 = t49 * t49; /* link j6: motion */
     const puma560_real_t t66 = t50 * t50;
-    const puma560_real_t t67 = t7 * t7;
+    const puma560_real_t t67 = t7 * t7; /* link j3: motion */
     const puma560_real_t t68 = t13 * t13;
-    const puma560_real_t t69 = t67 + t68;
-    const puma560_real_t t70 = t2 * dq[0];
+    const puma560_real_t t69 = t67 + t68; /* link j4: motion */
+    const puma560_real_t t70 = t2 * dq[0]; /* link j2: motion */
     const puma560_real_t t71 = t70 * t70;
     const puma560_real_t t72 = dq[1] * dq[1];
     const puma560_real_t t73 = t2 * ddq[0];
     const puma560_real_t t74 = PUMA560_C(9.81) * t0;
+    /* link j3: motion */
     const puma560_real_t t75 = t74 + (PUMA560_C(0.4318) * (t71 + t72) + PUMA560_C(0.1254) * t73);
-    const puma560_real_t t76 = t0 * dq[0];
+    const puma560_real_t t76 = t0 * dq[0]; /* link j2: motion */
     const puma560_real_t t77 = t76 * t70;
-    const puma560_real_t t78 = ddq[1] + t77;
-    const puma560_real_t t79 = t0 * ddq[0];
+    const puma560_real_t t78 = ddq[1] + t77; /* link j3: motion */
+    const puma560_real_t t79 = t0 * ddq[0]; /* link j2: motion */
     const puma560_real_t t80 = PUMA560_C(9.81) * t2;
+    /* link j3: motion */
     const puma560_real_t t81 = t80 + (PUMA560_C(-0.4318) * t78 + PUMA560_C(-0.1254) * t79);
     const puma560_real_t t82 = t1 * t75 + t3 * t81;
+    /* link j4: motion */
     const puma560_real_t t83 = t82 + (PUMA560_C(0.0203) * t69 + PUMA560_C(0.4318) * t10);
     const puma560_real_t t84 = t32 + t33;
-    const puma560_real_t t85 = t76 * t76;
+    const puma560_real_t t85 = t76 * t76; /* link j2: motion */
     const puma560_real_t t86 = dq[1] * t76;
     const puma560_real_t t87 = t86 - t73;
-    const puma560_real_t t88 = t86 + t87;
+    const puma560_real_t t88 = t86 + t87; /* link j3: motion */
     const puma560_real_t t89 = PUMA560_C(0.4318) * t88 + PUMA560_C(0.1254) * (t85 + t71);
+    /* link j4: motion */
     const puma560_real_t t90 = t89 + (PUMA560_C(0.0203) * t84 - PUMA560_C(-0.4318) * t16);
     const puma560_real_t t91 = t11 * t83 - t17 * t90;
     const puma560_real_t t92 = t8 - t9;
-    const puma560_real_t t93 = t5 * t5;
-    const puma560_real_t t94 = t93 + t68;
-    const puma560_real_t t95 = t1 * t81 - t3 * t75;
+    const puma560_real_t t93 = t5 * t5; /* link j3: motion */
+    const puma560_real_t t94 = t93 + t68; /* link j4: motion */
+    const puma560_real_t t95 = t1 * t81 - t3 * t75; /* link j3: motion */
+    /* link j4: motion */
     const puma560_real_t t96 = t95 + (PUMA560_C(0.0203) * t92 + PUMA560_C(0.4318) * t94);
-    const puma560_real_t t97 = t24 * t91 + t25 * t96;
-    const puma560_real_t t98 = t17 * t83 + t11 * t90;
-    const puma560_real_t t99 = t30 * t97 + t47 * t98;
-    const puma560_real_t t100 = t24 * t96 - t25 * t91;
+    const puma560_real_t t97 = t24 * t91 + t25 * t96; /* link j5: motion */
+    const puma560_real_t t98 = t17 * t83 + t11 * t90; /* link j4: motion */
+    const puma560_real_t t99 = t30 * t97 + t47 * t98; /* link j6: motion */
+    const puma560_real_t t100 = t24 * t96 - t25 * t91; /* link j5: motion */
+    /* link j6: force and moment */
     const puma560_real_t t101 = (t65 - t66) * parameters[YZ6] - (t58 - t64 * parameters[XZ6])
         - (t100 * parameters[MY6] + t99 * parameters[MZ6]);
-    const puma560_real_t t102 = t51 + t52;
+    const puma560_real_t t102 = t51 + t52; /* link j6: columns */
+    /* link j6: force and moment */
     const puma560_real_t t103 = t55 * (parameters[XX6] - parameters[ZZ6]) - t56 * parameters[YY6]
         + t102 * parameters[XY6];
-    const puma560_real_t t104 = t63 - t62;
-    const puma560_real_t t105 = t54 * t54;
+    const puma560_real_t t104 = t63 - t62; /* link j6: columns */
+    const puma560_real_t t105 = t54 * t54; /* link j6: motion */
     const puma560_real_t t106 = t47 * t97 - t30 * t98;
+    /* link j6: force and moment */
     const puma560_real_t t107 = (t105 - t66) * parameters[XZ6] + (t103 + t104 * parameters[YZ6])
         + (t106 * parameters[MZ6] - t100 * parameters[MX6]);
-    const puma560_real_t t108 = t60 + t61;
+    const puma560_real_t t108 = t60 + t61; /* link j6: motion */
+    /* link j5: force and moment */
     const puma560_real_t t109 = t44 * (parameters[ZZ5] - parameters[YY5]) - t45 * parameters[XX5]
         + t108 * parameters[XY5];
-    const puma560_real_t t110 = t23 - t28;
-    const puma560_real_t t111 = t27 * t27;
+    const puma560_real_t t110 = t23 - t28; /* link j6: motion */
+    const puma560_real_t t111 = t27 * t27; /* link j5: motion */
     const puma560_real_t t112 = t43 * t43;
+    /* link j5: force and moment */
     const puma560_real_t t113 = (t111 - t112) * parameters[YZ5] + (t109 + t110 * parameters[XZ5])
         + (t100 * parameters[MZ5] - t98 * parameters[MY5]);
-    const puma560_real_t t114 = t113 + (t47 * t101 + t30 * t107);
+    const puma560_real_t t114 = t113 + (t47 * t101 + t30 * t107); /* link j6: what it passes on */
+    /* link j6: force and moment */
     const puma560_real_t t115 = t62 * parameters[ZZ6] - t63 * (parameters[XX6] - parameters[YY6])
         + t53 * parameters[YZ6];
     const puma560_real_t t116 = (t105 - t65) * parameters[XY6] + (t115 - t48 * parameters[XZ6])
         + (t99 * parameters[MX6] + t106 * parameters[MY6]);
+    /* link j5: force and moment */
     const puma560_real_t t117 = t60 * (parameters[ZZ5] - parameters[XX5]) + t61 * parameters[YY5]
         - t46 * parameters[XY5];
-    const puma560_real_t t118 = t26 * t26;
+    const puma560_real_t t118 = t26 * t26; /* link j5: motion */
+    /* link j5: force and moment */
     const puma560_real_t t119 = (t112 - t118) * parameters[XZ5] + (t117 + t29 * parameters[YZ5])
         + (t98 * parameters[MX5] - t97 * parameters[MZ5]);
-    const puma560_real_t t120 = t119 + t116;
-    const puma560_real_t t121 = t21 - t22;
+    const puma560_real_t t120 = t119 + t116; /* link j6: what it passes on */
+    const puma560_real_t t121 = t21 - t22; /* link j5: motion */
+    /* link j4: force and moment */
     const puma560_real_t t122 = t40 * parameters[XX4] - t39 * (parameters[YY4] - parameters[ZZ4])
         - t121 * parameters[XY4];
-    const puma560_real_t t123 = t34 + t36;
-    const puma560_real_t t124 = t35 * t35;
+    const puma560_real_t t123 = t34 + t36; /* link j5: motion */
+    const puma560_real_t t124 = t35 * t35; /* link j4: motion */
     const puma560_real_t t125 = t20 * t20;
+    /* link j4: force and moment */
     const puma560_real_t t126 = (t124 - t125) * parameters[YZ4] - (t122 - t123 * parameters[XZ4])
         - (t96 * parameters[MY4] + t98 * parameters[MZ4]);
-    const puma560_real_t t127 = t126 + (t24 * t114 - t25 * t120);
+    const puma560_real_t t127 = t126 + (t24 * t114 - t25 * t120); /* link j5: what it passes on */
+    /* link j5: force and moment */
     const puma560_real_t t128 = t28 * (parameters[XX5] - parameters[YY5]) + t23 * parameters[ZZ5]
         + t59 * parameters[YZ5];
     const puma560_real_t t129 = (t118 - t111) * parameters[XY5] + (t128 - t42 * parameters[XZ5])
         + (t97 * parameters[MY5] - t100 * parameters[MX5]);
-    const puma560_real_t t130 = t129 + (t47 * t107 - t30 * t101);
+    const puma560_real_t t130 = t129 + (t47 * t107 - t30 * t101); /* link j6: what it passes on */
+    /* link j4: force and moment */
     const puma560_real_t t131 = t21 * (parameters[XX4] - parameters[ZZ4]) + t22 * parameters[YY4]
         + t41 * parameters[XY4];
-    const puma560_real_t t132 = t19 * t19;
+    const puma560_real_t t132 = t19 * t19; /* link j4: motion */
+    /* link j4: force and moment */
     const puma560_real_t t133 = (t132 - t125) * parameters[XZ4] + (t131 + t37 * parameters[YZ4])
         + (t91 * parameters[MZ4] - t96 * parameters[MX4]);
-    const puma560_real_t t134 = t133 + t130;
+    const puma560_real_t t134 = t133 + t130; /* link j5: what it passes on */
+    /* link j6: force and moment */
     const puma560_real_t t135 = (t65 + t66) * parameters[MX6] - t104 * parameters[MY6]
         - t53 * parameters[MZ6];
     const puma560_real_t t136 = t106 * parameters[M6] + t135;
     const puma560_real_t t137 = (t105 + t66) * parameters[MY6] - t64 * parameters[MX6]
         - t48 * parameters[MZ6];
     const puma560_real_t t138 = t99 * parameters[M6] - t137;
+    /* link j5: force and moment */
     const puma560_real_t t139 = (t111 + t112) * parameters[MX5] + t29 * parameters[MY5]
         - t59 * parameters[MZ5];
+    /* link j6: what it passes on */
     const puma560_real_t t140 = t97 * parameters[M5] + t139 + (t47 * t136 + t30 * t138);
+    /* link j6: force and moment */
     const puma560_real_t t141 = (t105 + t65) * parameters[MZ6] + (t57 * parameters[MX6]
         + t102 * parameters[MY6]);
+    /* link j5: force and moment */
     const puma560_real_t t142 = (t118 + t112) * parameters[MY5] - t110 * parameters[MX5]
         - t42 * parameters[MZ5];
+    /* link j6: what it passes on */
     const puma560_real_t t143 = t100 * parameters[M5] + t142 + (t100 * parameters[M6] + t141);
+    /* link j4: force and moment */
     const puma560_real_t t144 = t37 * parameters[MY4] - (t124 + t125) * parameters[MX4]
         - t18 * parameters[MZ4];
+    /* link j5: what it passes on */
     const puma560_real_t t145 = t144 - t91 * parameters[M4] + (t25 * t143 - t24 * t140);
+    /* link j5: force and moment */
     const puma560_real_t t146 = (t118 + t111) * parameters[MZ5] + (t108 * parameters[MX5]
         + t46 * parameters[MY5]);
+    /* link j6: what it passes on */
     const puma560_real_t t147 = t98 * parameters[M5] + t146 - (t30 * t136 - t47 * t138);
+    /* link j4: force and moment */
     const puma560_real_t t148 = (t132 + t125) * parameters[MY4] - t123 * parameters[MX4]
         - t38 * parameters[MZ4];
-    const puma560_real_t t149 = t98 * parameters[M4] - t148 + t147;
-    const puma560_real_t t150 = t17 * t145 + t11 * t149;
+    const puma560_real_t t149 = t98 * parameters[M4] - t148 + t147; /* link j5: what it passes on */
+    const puma560_real_t t150 = t17 * t145 + t11 * t149; /* link j4: what it passes on */
+    /* link j3: force and moment */
     const puma560_real_t t151 = t14 * (parameters[ZZ3] - parameters[YY3]) - t15 * parameters[XX3]
         + t84 * parameters[XY3];
     const puma560_real_t t152 = t95 * parameters[MZ3] - t89 * parameters[MY3] + ((t67 - t68) * parameters[YZ3]
         + (t151 - t92 * parameters[XZ3]));
+    /* link j4: what it passes on */
     const puma560_real_t t153 = t152 + (t11 * t127 + t17 * t134 + PUMA560_C(-0.4318) * t150);
+    /* link j4: force and moment */
     const puma560_real_t t154 = t34 * parameters[ZZ4] - t36 * (parameters[XX4] - parameters[YY4])
         - t18 * parameters[YZ4];
     const puma560_real_t t155 = (t132 - t124) * parameters[XY4] + (t154 - t38 * parameters[XZ4])
         + (t98 * parameters[MX4] + t91 * parameters[MY4]);
-    const puma560_real_t t156 = t155 + (t25 * t114 + t24 * t120);
+    const puma560_real_t t156 = t155 + (t25 * t114 + t24 * t120); /* link j5: what it passes on */
+    /* link j3: force and moment */
     const puma560_real_t t157 = t32 * (parameters[XX3] - parameters[ZZ3]) - t33 * parameters[YY3]
         + t16 * parameters[XY3];
     const puma560_real_t t158 = t82 * parameters[MZ3] - t89 * parameters[MX3] + ((t93 - t68) * parameters[XZ3]
         + (t157 - t10 * parameters[YZ3]));
-    const puma560_real_t t159 = t158 - (t156 - PUMA560_C(-0.0203) * t150);
+    const puma560_real_t t159 = t158 - (t156 - PUMA560_C(-0.0203) * t150); /* link j4: what it passes on */
     const puma560_real_t t160 = t11 * t145 - t17 * t149;
+    /* link j3: force and moment */
     const puma560_real_t t161 = t31 * parameters[MZ3] - (t69 * parameters[MX3] + t10 * parameters[MY3])
         - t82 * parameters[M3];
-    const puma560_real_t t162 = t161 + t160;
+    const puma560_real_t t162 = t161 + t160; /* link j4: what it passes on */
+    /* link j4: force and moment */
     const puma560_real_t t163 = (t132 + t124) * parameters[MZ4] + (t121 * parameters[MX4]
         + t41 * parameters[MY4]);
+    /* link j5: what it passes on */
     const puma560_real_t t164 = t96 * parameters[M4] + t163 + (t25 * t140 + t24 * t143);
+    /* link j3: force and moment */
     const puma560_real_t t165 = t95 * parameters[M3] + (t94 * parameters[MY3] + t92 * parameters[MX3]
         - t12 * parameters[MZ3]);
-    const puma560_real_t t166 = t165 + t164;
-    const puma560_real_t t167 = t1 * t166 - t3 * t162;
-    const puma560_real_t t168 = dq[1] * t70;
+    const puma560_real_t t166 = t165 + t164; /* link j4: what it passes on */
+    const puma560_real_t t167 = t1 * t166 - t3 * t162; /* link j3: what it passes on */
+    const puma560_real_t t168 = dq[1] * t70; /* link j2: motion */
     const puma560_real_t t169 = t79 + t168;
+    /* link j2: force and moment */
     const puma560_real_t t170 = t168 * (parameters[YY2] - parameters[ZZ2]) - t169 * parameters[XX2]
         + t88 * parameters[XY2];
     const puma560_real_t t171 = t80 * parameters[MZ2] + ((t71 - t72) * parameters[YZ2] + (t170
         + t78 * parameters[XZ2]));
+    /* link j3: what it passes on */
     const puma560_real_t t172 = t171 + (t1 * t153 + t3 * t159 + PUMA560_C(0.1254) * t167);
+    /* link j3: force and moment */
     const puma560_real_t t173 = (t93 + t67) * parameters[MZ3] + (t84 * parameters[MX3]
         + t16 * parameters[MY3]);
+    /* link j3: what it passes on */
     const puma560_real_t t174 = PUMA560_C(0.1254) * (t1 * t162 + t3 * t166)
         + PUMA560_C(0.4318) * (t89 * parameters[M3] + t173 + t150);
+    /* link j2: force and moment */
     const puma560_real_t t175 = t86 * (parameters[ZZ2] - parameters[XX2]) + t87 * parameters[YY2] - (t168
         + t169) * parameters[XY2];
     const puma560_real_t t176 = (t72 - t85) * parameters[XZ2] + (t175 + (ddq[1] - t77) * parameters[YZ2]);
+    /* link j3: what it passes on */
     const puma560_real_t t177 = t176 - t74 * parameters[MZ2] + (t3 * t153 - t1 * t159 + t174);
     const puma560_real_t t178 = PUMA560_C(0.06944177768728742) * (t0 * t172 + t2 * t177
         - ddq[0] * parameters[ZZ1]);
-    const puma560_real_t t179 = puma560_sign(dq[0]);
+    const puma560_real_t t179 = puma560_sign(dq[0]); /* joint j1: coulomb_friction */
     const puma560_real_t t180 = PUMA560_C(-62.6111) * dq[0] * parameters[FV1] - t179 * parameters[FC1]
         + PUMA560_C(-62.6111) * ddq[0] * parameters[IA1];
     out[0] = PUMA560_C(4.3478260869565215) * t180 + t178;
+    /* link j4: what it passes on */
     const puma560_real_t t181 = t11 * t134 - t17 * t127 + (PUMA560_C(-0.0203) * t164
         + PUMA560_C(-0.4318) * t160);
+    /* link j3: force and moment */
     const puma560_real_t t182 = t8 * (parameters[XX3] - parameters[YY3]) + t9 * parameters[ZZ3]
         + t31 * parameters[YZ3];
     const puma560_real_t t183 = t82 * parameters[MY3] - t95 * parameters[MX3] + ((t93 - t67) * parameters[XY3]
         + (t182 - t12 * parameters[XZ3]));
-    const puma560_real_t t184 = t183 + t181;
+    const puma560_real_t t184 = t183 + t181; /* link j4: what it passes on */
+    /* link j2: force and moment */
     const puma560_real_t t185 = t77 * (parameters[YY2] - parameters[XX2]) + ddq[1] * parameters[ZZ2]
         - t73 * parameters[YZ2];
     const puma560_real_t t186 = t74 * parameters[MY2] - t80 * parameters[MX2] + ((t85 - t71) * parameters[XY2]
         + (t185 - t79 * parameters[XZ2]));
-    const puma560_real_t t187 = puma560_sign(dq[1]);
+    const puma560_real_t t187 = puma560_sign(dq[1]); /* joint j2: coulomb_friction */
     const puma560_real_t t188 = PUMA560_C(107.815) * dq[1] * parameters[FV2] + t187 * parameters[FC2]
         + PUMA560_C(107.815) * ddq[1] * parameters[IA2];
     const puma560_real_t t189 = PUMA560_C(4.3478260869565215) * t188 + PUMA560_C(0.04032672714331514) * (t186
         + (t184 + PUMA560_C(-0.4318) * t167));
     out[1] = t189;
-    const puma560_real_t t190 = puma560_sign(dq[2]);
+    const puma560_real_t t190 = puma560_sign(dq[2]); /* joint j3: coulomb_friction */
     const puma560_real_t t191 = PUMA560_C(-53.7063) * dq[2] * parameters[FV3] - t190 * parameters[FC3]
         + PUMA560_C(-53.7063) * ddq[2] * parameters[IA3];
     out[2] = PUMA560_C(4.3478260869565215) * t191 + PUMA560_C(-0.08095560645504385) * t184;
-    const puma560_real_t t192 = puma560_sign(dq[3]);
+    const puma560_real_t t192 = puma560_sign(dq[3]); /* joint j4: coulomb_friction */
     const puma560_real_t t193 = PUMA560_C(76.0364) * dq[3] * parameters[FV4] + t192 * parameters[FC4]
         + PUMA560_C(76.0364) * ddq[3] * parameters[IA4];
     out[3] = PUMA560_C(14.285714285714285) * t193 + PUMA560_C(0.18787994020908783) * t156;
-    const puma560_real_t t194 = puma560_sign(dq[4]);
+    const puma560_real_t t194 = puma560_sign(dq[4]); /* joint j5: coulomb_friction */
     const puma560_real_t t195 = PUMA560_C(71.923) * dq[4] * parameters[FV5] + t194 * parameters[FC5]
         + PUMA560_C(71.923) * ddq[4] * parameters[IA5];
     out[4] = PUMA560_C(14.285714285714285) * t195 + PUMA560_C(0.19862511694053758) * t130;
-    const puma560_real_t t196 = puma560_sign(dq[5]);
+    const puma560_real_t t196 = puma560_sign(dq[5]); /* joint j6: coulomb_friction */
     const puma560_real_t t197 = PUMA560_C(76.686) * dq[5] * parameters[FV6] + t196 * parameters[FC6]
         + PUMA560_C(76.686) * ddq[5] * parameters[IA6];
     out[5] = PUMA560_C(14.285714285714285) * t197 + PUMA560_C(0.1862884266452062) * t116;

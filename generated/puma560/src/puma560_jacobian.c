@@ -22,15 +22,15 @@
  */
 #include "puma560_private.h"
 
-#if PUMA560_GENERATION != 0xAC9DC6F4UL
+#if PUMA560_GENERATION != 0x0486C622UL
 #error "puma560.h and puma560_jacobian.c are of different generations: generate the arm again"
 #endif
 
-int puma560_jacobian(
+puma560_status_t puma560_jacobian(
     const puma560_real_t q[PUMA560_N_JOINTS],
     puma560_real_t out[6 * PUMA560_N_JOINTS])
 {
-    int status = PUMA560_STATUS_OK;
+    puma560_status_t status = PUMA560_STATUS_OK;
 
     if (!puma560_within_joints(q, PUMA560_C(1.0e8))) {
         status |= PUMA560_STATUS_INPUT;
@@ -50,24 +50,24 @@ int puma560_jacobian(
     PUMA560_SINCOS(q[3], &t22, &t23);
     puma560_real_t t24, t25;
     PUMA560_SINCOS(q[4], &t24, &t25);
-    const puma560_real_t t2 = t0 * t1;
+    const puma560_real_t t2 = t0 * t1; /* link j2: pose */
     const puma560_real_t t5 = t0 * t4;
-    const puma560_real_t t7 = t6 * t5 - t3 * t2;
+    const puma560_real_t t7 = t6 * t5 - t3 * t2; /* link j3: pose */
     const puma560_real_t t8 = t6 * t2 + t3 * t5;
-    const puma560_real_t t9 = PUMA560_C(0.0203) * t7 + PUMA560_C(0.4318) * t8;
+    const puma560_real_t t9 = PUMA560_C(0.0203) * t7 + PUMA560_C(0.4318) * t8; /* link j4: pose */
     const puma560_real_t t11 = PUMA560_C(-0.4318) * t2 + PUMA560_C(-0.1254) * t10 + t9;
     out[0] = t11;
-    const puma560_real_t t12 = t4 * t3 + t1 * t6;
+    const puma560_real_t t12 = t4 * t3 + t1 * t6; /* link j3: motion */
     const puma560_real_t t13 = t4 * t6 - t1 * t3;
-    const puma560_real_t t14 = PUMA560_C(-0.0203) * t12 + PUMA560_C(0.4318) * t13;
+    const puma560_real_t t14 = PUMA560_C(-0.0203) * t12 + PUMA560_C(0.4318) * t13; /* link j4: pose */
     const puma560_real_t t15 = PUMA560_C(-0.4318) * t4 + t14;
     out[1] = t10 * t15;
     out[2] = t10 * t14;
-    const puma560_real_t t16 = t10 * t1;
+    const puma560_real_t t16 = t10 * t1; /* link j2: pose */
     const puma560_real_t t17 = t10 * t4;
-    const puma560_real_t t18 = t3 * t16 - t6 * t17;
+    const puma560_real_t t18 = t3 * t16 - t6 * t17; /* link j3: pose */
     const puma560_real_t t19 = t6 * t16 + t3 * t17;
-    const puma560_real_t t20 = PUMA560_C(0.0203) * t18 + PUMA560_C(-0.4318) * t19;
+    const puma560_real_t t20 = PUMA560_C(0.0203) * t18 + PUMA560_C(-0.4318) * t19; /* link j4: pose */
     const puma560_real_t t21 = PUMA560_C(0.4318) * t16 + PUMA560_C(-0.1254) * t0 + t20;
     out[6] = t21;
     out[7] = t0 * t15;
@@ -78,7 +78,7 @@ int puma560_jacobian(
     out[20] = -t0;
     out[21] = -t19;
     out[22] = t22 * t18 - t0 * t23;
-    const puma560_real_t t26 = t24 * (t23 * t18 + t0 * t22) + t25 * t19;
+    const puma560_real_t t26 = t24 * (t23 * t18 + t0 * t22) + t25 * t19; /* link j5: pose */
     out[23] = -t26;
     out[25] = t10;
     out[26] = t10;

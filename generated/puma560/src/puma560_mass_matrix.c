@@ -79,11 +79,11 @@
  */
 #include "puma560_private.h"
 
-#if PUMA560_GENERATION != 0xAC9DC6F4UL
+#if PUMA560_GENERATION != 0x0486C622UL
 #error "puma560.h and puma560_mass_matrix.c are of different generations: generate the arm again"
 #endif
 
-int puma560_mass_matrix(
+puma560_status_t puma560_mass_matrix(
     const puma560_real_t q[PUMA560_N_JOINTS],
     const puma560_real_t parameters[PUMA560_N_PARAMETERS],
     puma560_real_t out[PUMA560_N_JOINTS * PUMA560_N_JOINTS])
@@ -91,7 +91,7 @@ int puma560_mass_matrix(
     enum { ZZ1R = 0, XX2R, XY2, XZ2R, YZ2, ZZ2R, MX2R, MY2, XX3R, XY3R, XZ3, YZ3, ZZ3R, MX3R, MY3R, XX4R, XY4,
         XZ4, YZ4, ZZ4R, MX4, MY4R, XX5R, XY5, XZ5, YZ5, ZZ5R, MX5, MY5R, XX6R, XY6, XZ6, YZ6, ZZ6, MX6, MY6,
         FV1, FC1, FV2, FC2, FV3, FC3, IA3, FV4, FC4, IA4, FV5, FC5, IA5, FV6, FC6, IA6 };
-    int status = PUMA560_STATUS_OK;
+    puma560_status_t status = PUMA560_STATUS_OK;
 
     if (!puma560_within_joints(q, PUMA560_C(1.0e8))
         || !PUMA560_PARAMETERS_USABLE(puma560_within(parameters, 52, PUMA560_C(1.0e18)))) {
@@ -112,74 +112,88 @@ int puma560_mass_matrix(
     PUMA560_SINCOS(q[4], &t8, &t5);
     puma560_real_t t1, t0;
     PUMA560_SINCOS(q[5], &t1, &t0);
+    /* link j6: inertia of it and all beyond */
     const puma560_real_t t2 = parameters[XY6] * (PUMA560_C(2.0) * t1) - t0 * parameters[XX6R];
     const puma560_real_t t3 = t0 * t2;
     const puma560_real_t t4 = parameters[XX5R] - t3;
+    /* link j6: column of the mass matrix */
     const puma560_real_t t6 = t1 * parameters[YZ6] - t0 * parameters[XZ6];
-    const puma560_real_t t7 = t6 - parameters[XY5];
+    const puma560_real_t t7 = t6 - parameters[XY5]; /* link j6: inertia of it and all beyond */
+    /* link j5: inertia of it and all beyond */
     const puma560_real_t t9 = t5 * (parameters[ZZ6] - t4) - t7 * (PUMA560_C(2.0) * t8);
     const puma560_real_t t10 = t5 * t9;
     const puma560_real_t t11 = parameters[ZZ4R] + (t4 + t10);
+    /* link j6: column of the mass matrix */
     const puma560_real_t t12 = t0 * parameters[MY6] + t1 * parameters[MX6];
-    const puma560_real_t t13 = parameters[MY4R] + t12;
+    const puma560_real_t t13 = parameters[MY4R] + t12; /* link j5: inertia of it and all beyond */
+    /* link j6: column of the mass matrix */
     const puma560_real_t t15 = t0 * parameters[MX6] - t1 * parameters[MY6];
-    const puma560_real_t t16 = parameters[MX5] + t15;
-    const puma560_real_t t17 = t5 * t16 - t8 * parameters[MY5R];
-    const puma560_real_t t18 = parameters[MX4] + t17;
-    const puma560_real_t t20 = t19 * t18 - t14 * t13;
-    const puma560_real_t t21 = PUMA560_C(0.0406) * t20;
+    const puma560_real_t t16 = parameters[MX5] + t15; /* link j6: inertia of it and all beyond */
+    const puma560_real_t t17 = t5 * t16 - t8 * parameters[MY5R]; /* link j5: column of the mass matrix */
+    const puma560_real_t t18 = parameters[MX4] + t17; /* link j5: inertia of it and all beyond */
+    const puma560_real_t t20 = t19 * t18 - t14 * t13; /* link j4: column of the mass matrix */
+    const puma560_real_t t21 = PUMA560_C(0.0406) * t20; /* link j4: inertia of it and all beyond */
     const puma560_real_t t22 = t11 + t21;
+    /* link j5: inertia of it and all beyond */
     const puma560_real_t t23 = parameters[XX4R] + (parameters[ZZ6] - t10);
+    /* link j6: inertia of it and all beyond */
     const puma560_real_t t24 = parameters[ZZ5R] + (parameters[XX6R] + t3);
     const puma560_real_t t25 = parameters[XZ5] - (parameters[XY6] - t1 * t2);
+    /* link j6: column of the mass matrix */
     const puma560_real_t t26 = t1 * parameters[XZ6] + t0 * parameters[YZ6];
-    const puma560_real_t t27 = parameters[YZ5] - t26;
-    const puma560_real_t t28 = t8 * t27 - t5 * t25;
-    const puma560_real_t t29 = parameters[XY4] + t28;
+    const puma560_real_t t27 = parameters[YZ5] - t26; /* link j6: inertia of it and all beyond */
+    const puma560_real_t t28 = t8 * t27 - t5 * t25; /* link j5: column of the mass matrix */
+    const puma560_real_t t29 = parameters[XY4] + t28; /* link j5: inertia of it and all beyond */
+    /* link j4: inertia of it and all beyond */
     const puma560_real_t t30 = t19 * (t23 - t24) + t29 * (PUMA560_C(-2.0) * t14);
     const puma560_real_t t31 = t19 * t30;
-    const puma560_real_t t32 = t5 * parameters[MY5R] + t8 * t16;
-    const puma560_real_t t33 = PUMA560_C(0.8636) * t32;
+    const puma560_real_t t32 = t5 * parameters[MY5R] + t8 * t16; /* link j5: column of the mass matrix */
+    const puma560_real_t t33 = PUMA560_C(0.8636) * t32; /* link j4: inertia of it and all beyond */
     const puma560_real_t t34 = parameters[XX3R] + (t24 + t31 + t33);
-    const puma560_real_t t36 = t7 + t8 * t9 - parameters[XZ4];
-    const puma560_real_t t37 = t8 * t25 + t5 * t27;
-    const puma560_real_t t38 = t37 - parameters[YZ4];
-    const puma560_real_t t39 = t14 * t38 - t19 * t36;
+    const puma560_real_t t36 = t7 + t8 * t9 - parameters[XZ4]; /* link j5: inertia of it and all beyond */
+    const puma560_real_t t37 = t8 * t25 + t5 * t27; /* link j5: column of the mass matrix */
+    const puma560_real_t t38 = t37 - parameters[YZ4]; /* link j5: inertia of it and all beyond */
+    const puma560_real_t t39 = t14 * t38 - t19 * t36; /* link j4: column of the mass matrix */
     const puma560_real_t t40 = PUMA560_C(-0.4318) * t20;
+    /* link j4: inertia of it and all beyond */
     const puma560_real_t t41 = parameters[XY3R] + (t39 + (t40 + PUMA560_C(-0.0203) * t32));
+    /* link j3: inertia of it and all beyond */
     const puma560_real_t t43 = t35 * (t22 - t34) + t41 * (PUMA560_C(2.0) * t42);
     const puma560_real_t t44 = t35 * t43;
-    const puma560_real_t t45 = parameters[MX3R] + t20;
+    const puma560_real_t t45 = parameters[MX3R] + t20; /* link j4: inertia of it and all beyond */
     const puma560_real_t t46 = parameters[MY3R] + t32;
-    const puma560_real_t t47 = t35 * t45 - t42 * t46;
-    const puma560_real_t t48 = PUMA560_C(0.8636) * t47;
-    const puma560_real_t t49 = t19 * t13 + t14 * t18;
-    const puma560_real_t t50 = PUMA560_C(-0.2508) * t49;
+    const puma560_real_t t47 = t35 * t45 - t42 * t46; /* link j3: column of the mass matrix */
+    const puma560_real_t t48 = PUMA560_C(0.8636) * t47; /* link j3: inertia of it and all beyond */
+    const puma560_real_t t49 = t19 * t13 + t14 * t18; /* link j4: column of the mass matrix */
+    const puma560_real_t t50 = PUMA560_C(-0.2508) * t49; /* link j3: inertia of it and all beyond */
     const puma560_real_t t51 = parameters[XX2R] + (t22 - t44 + t50);
-    const puma560_real_t t53 = t35 * t46 + t42 * t45;
+    const puma560_real_t t53 = t35 * t46 + t42 * t45; /* link j3: column of the mass matrix */
+    /* link j2: inertia of it and all beyond */
     const puma560_real_t t55 = (parameters[XY2] + (t41 - t42 * t43
         + PUMA560_C(-0.4318) * t53)) * (PUMA560_C(2.0) * t54);
     const puma560_real_t t56 = t52 * (t34 + t44 + (t48 + t50) - t51) + t55;
     out[0] = parameters[ZZ1R] + (t51 + t52 * t56);
+    /* link j4: inertia of it and all beyond */
     const puma560_real_t t57 = t29 + t14 * t30 + PUMA560_C(-0.0203) * t49 - parameters[XZ3];
-    const puma560_real_t t58 = PUMA560_C(0.4318) * t49;
+    const puma560_real_t t58 = PUMA560_C(0.4318) * t49; /* link j4: column of the mass matrix */
     const puma560_real_t t59 = t14 * t36 + t19 * t38 + t58;
-    const puma560_real_t t60 = parameters[YZ3] + t59;
-    const puma560_real_t t61 = t35 * t57 + t42 * t60;
+    const puma560_real_t t60 = parameters[YZ3] + t59; /* link j4: inertia of it and all beyond */
+    const puma560_real_t t61 = t35 * t57 + t42 * t60; /* link j3: column of the mass matrix */
     const puma560_real_t t62 = PUMA560_C(0.1254) * t47;
     const puma560_real_t t63 = t42 * t57 - t35 * t60 + PUMA560_C(0.1254) * t53;
+    /* link j2: column of the mass matrix */
     const puma560_real_t t64 = t54 * (t61 + (t62 - t58) - parameters[XZ2R]) + t52 * (t63 - parameters[YZ2]);
     out[1] = t64;
-    const puma560_real_t t65 = t54 * (t61 + t62) + t52 * t63;
+    const puma560_real_t t65 = t54 * (t61 + t62) + t52 * t63; /* link j3: column of the mass matrix */
     out[2] = t65;
-    const puma560_real_t t66 = t39 + t40;
+    const puma560_real_t t66 = t39 + t40; /* link j4: column of the mass matrix */
     const puma560_real_t t67 = t11 - PUMA560_C(-0.0203) * t20;
     const puma560_real_t t68 = t42 * t49;
     const puma560_real_t t69 = t54 * (t42 * t67 - t35 * t66 + PUMA560_C(-0.1254) * t68);
     const puma560_real_t t70 = t40 + PUMA560_C(0.1254) * (t35 * t49) - (t42 * t66 + t35 * t67);
     const puma560_real_t t71 = t69 + t52 * t70;
     out[3] = t71;
-    const puma560_real_t t72 = t14 * t32;
+    const puma560_real_t t72 = t14 * t32; /* link j5: column of the mass matrix */
     const puma560_real_t t73 = PUMA560_C(0.4318) * t72;
     const puma560_real_t t74 = t19 * t28 - t14 * t24 - t73;
     const puma560_real_t t75 = t37 - PUMA560_C(0.0203) * t72;
@@ -189,7 +203,7 @@ int puma560_mass_matrix(
     const puma560_real_t t79 = t42 * t74 - t35 * t75 + (t73 + PUMA560_C(0.1254) * (t35 * t76 + t42 * t17));
     const puma560_real_t t80 = t78 + t52 * t79;
     out[4] = t80;
-    const puma560_real_t t81 = t5 * t6 + t8 * parameters[ZZ6];
+    const puma560_real_t t81 = t5 * t6 + t8 * parameters[ZZ6]; /* link j6: column of the mass matrix */
     const puma560_real_t t82 = t5 * t12;
     const puma560_real_t t83 = t14 * t82 - t19 * t15;
     const puma560_real_t t84 = PUMA560_C(0.4318) * t83;
@@ -204,15 +218,18 @@ int puma560_mass_matrix(
     const puma560_real_t t93 = t92 + t52 * t90;
     out[5] = t93;
     out[6] = t64;
+    /* link j4: inertia of it and all beyond */
     const puma560_real_t t94 = parameters[ZZ3R] + (t23 - t31 + (t21 + t33));
     out[7] = parameters[ZZ2R] + (t94 + t48);
-    const puma560_real_t t95 = t94 + PUMA560_C(0.4318) * t47;
+    const puma560_real_t t95 = t94 + PUMA560_C(0.4318) * t47; /* link j3: column of the mass matrix */
     out[8] = t95;
-    const puma560_real_t t96 = t59 + PUMA560_C(-0.4318) * t68;
+    const puma560_real_t t96 = t59 + PUMA560_C(-0.4318) * t68; /* link j4: column of the mass matrix */
     out[9] = t96;
+    /* link j5: column of the mass matrix */
     const puma560_real_t t97 = t14 * t28 + t19 * t24 + (PUMA560_C(0.0203) * t17 + PUMA560_C(0.4318) * t76);
     const puma560_real_t t98 = t97 + PUMA560_C(0.4318) * t77;
     out[10] = t98;
+    /* link j6: column of the mass matrix */
     const puma560_real_t t99 = t14 * t81 - t19 * t26 + (PUMA560_C(-0.0203) * t89 + PUMA560_C(0.4318) * t88);
     const puma560_real_t t100 = t99 + PUMA560_C(-0.4318) * t91;
     out[11] = t100;

@@ -104,11 +104,11 @@
  */
 #include "puma560_private.h"
 
-#if PUMA560_GENERATION != 0xAC9DC6F4UL
+#if PUMA560_GENERATION != 0x0486C622UL
 #error "puma560.h and puma560_mass_matrix_standard.c are of different generations: generate the arm again"
 #endif
 
-int puma560_mass_matrix_standard(
+puma560_status_t puma560_mass_matrix_standard(
     const puma560_real_t q[PUMA560_N_JOINTS],
     const puma560_real_t parameters[PUMA560_N_STANDARD_PARAMETERS],
     puma560_real_t out[PUMA560_N_JOINTS * PUMA560_N_JOINTS])
@@ -117,7 +117,7 @@ int puma560_mass_matrix_standard(
         M2, XX3, XY3, XZ3, YY3, YZ3, ZZ3, MX3, MY3, MZ3, M3, XX4, XY4, XZ4, YY4, YZ4, ZZ4, MX4, MY4, MZ4, M4,
         XX5, XY5, XZ5, YY5, YZ5, ZZ5, MX5, MY5, MZ5, M5, XX6, XY6, XZ6, YY6, YZ6, ZZ6, MX6, MY6, MZ6, M6, FV1,
         FC1, IA1, FV2, FC2, IA2, FV3, FC3, IA3, FV4, FC4, IA4, FV5, FC5, IA5, FV6, FC6, IA6 };
-    int status = PUMA560_STATUS_OK;
+    puma560_status_t status = PUMA560_STATUS_OK;
 
     if (!puma560_within_joints(q, PUMA560_C(1.0e8))
         || !PUMA560_PARAMETERS_USABLE(puma560_within(parameters, 78, PUMA560_C(1.0e18)))) {
@@ -138,81 +138,101 @@ int puma560_mass_matrix_standard(
     PUMA560_SINCOS(q[4], &t9, &t6);
     puma560_real_t t1, t0;
     PUMA560_SINCOS(q[5], &t1, &t0);
+    /* link j6: inertia of it and all beyond */
     const puma560_real_t t2 = t0 * (parameters[YY6] - parameters[XX6])
         + parameters[XY6] * (PUMA560_C(2.0) * t1);
     const puma560_real_t t3 = t0 * t2;
     const puma560_real_t t4 = parameters[XX5] + (parameters[YY6] - t3);
     const puma560_real_t t5 = parameters[YY5] + parameters[ZZ6];
+    /* link j6: column of the mass matrix */
     const puma560_real_t t7 = t1 * parameters[YZ6] - t0 * parameters[XZ6];
-    const puma560_real_t t8 = t7 - parameters[XY5];
+    const puma560_real_t t8 = t7 - parameters[XY5]; /* link j6: inertia of it and all beyond */
+    /* link j5: inertia of it and all beyond */
     const puma560_real_t t10 = t6 * (t5 - t4) - t8 * (PUMA560_C(2.0) * t9);
     const puma560_real_t t11 = t6 * t10;
     const puma560_real_t t12 = parameters[XX4] + (t5 - t11);
+    /* link j6: inertia of it and all beyond */
     const puma560_real_t t13 = parameters[ZZ5] + (parameters[XX6] + t3);
-    const puma560_real_t t14 = parameters[YY4] + t13;
+    const puma560_real_t t14 = parameters[YY4] + t13; /* link j5: inertia of it and all beyond */
+    /* link j6: inertia of it and all beyond */
     const puma560_real_t t16 = parameters[XZ5] - (parameters[XY6] - t1 * t2);
+    /* link j6: column of the mass matrix */
     const puma560_real_t t17 = t1 * parameters[XZ6] + t0 * parameters[YZ6];
-    const puma560_real_t t18 = parameters[YZ5] - t17;
-    const puma560_real_t t19 = t9 * t18 - t6 * t16;
-    const puma560_real_t t20 = parameters[XY4] + t19;
+    const puma560_real_t t18 = parameters[YZ5] - t17; /* link j6: inertia of it and all beyond */
+    const puma560_real_t t19 = t9 * t18 - t6 * t16; /* link j5: column of the mass matrix */
+    const puma560_real_t t20 = parameters[XY4] + t19; /* link j5: inertia of it and all beyond */
+    /* link j4: inertia of it and all beyond */
     const puma560_real_t t22 = t15 * (t12 - t14) + t20 * (PUMA560_C(-2.0) * t21);
     const puma560_real_t t23 = t15 * t22;
+    /* link j6: column of the mass matrix */
     const puma560_real_t t24 = t0 * parameters[MX6] - t1 * parameters[MY6];
-    const puma560_real_t t25 = parameters[MX5] + t24;
+    const puma560_real_t t25 = parameters[MX5] + t24; /* link j6: inertia of it and all beyond */
     const puma560_real_t t26 = parameters[MY5] + parameters[MZ6];
-    const puma560_real_t t27 = t6 * t26 + t9 * t25;
-    const puma560_real_t t28 = parameters[MZ4] + t27;
+    const puma560_real_t t27 = t6 * t26 + t9 * t25; /* link j5: column of the mass matrix */
+    const puma560_real_t t28 = parameters[MZ4] + t27; /* link j5: inertia of it and all beyond */
     const puma560_real_t t29 = parameters[M4] + (parameters[M5] + parameters[M6]);
-    const puma560_real_t t30 = PUMA560_C(0.4318) * t29;
+    const puma560_real_t t30 = PUMA560_C(0.4318) * t29; /* link j4: inertia of it and all beyond */
     const puma560_real_t t31 = PUMA560_C(0.4318) * (t30 + PUMA560_C(2.0) * t28);
     const puma560_real_t t32 = parameters[XX3] + (t14 + t23 + t31);
-    const puma560_real_t t33 = parameters[ZZ4] + (t4 + t11);
+    const puma560_real_t t33 = parameters[ZZ4] + (t4 + t11); /* link j5: inertia of it and all beyond */
+    /* link j6: column of the mass matrix */
     const puma560_real_t t34 = t0 * parameters[MY6] + t1 * parameters[MX6];
+    /* link j5: inertia of it and all beyond */
     const puma560_real_t t35 = parameters[MZ5] - t34 - parameters[MY4];
-    const puma560_real_t t36 = t6 * t25 - t9 * t26;
-    const puma560_real_t t37 = parameters[MX4] + t36;
-    const puma560_real_t t38 = t21 * t35 + t15 * t37;
-    const puma560_real_t t39 = PUMA560_C(0.0203) * t29;
+    const puma560_real_t t36 = t6 * t25 - t9 * t26; /* link j5: column of the mass matrix */
+    const puma560_real_t t37 = parameters[MX4] + t36; /* link j5: inertia of it and all beyond */
+    const puma560_real_t t38 = t21 * t35 + t15 * t37; /* link j4: column of the mass matrix */
+    const puma560_real_t t39 = PUMA560_C(0.0203) * t29; /* link j4: inertia of it and all beyond */
     const puma560_real_t t40 = PUMA560_C(0.0203) * (t39 + PUMA560_C(2.0) * t38);
     const puma560_real_t t41 = parameters[YY3] + (t33 + t40);
-    const puma560_real_t t43 = t8 + t9 * t10 - parameters[XZ4];
-    const puma560_real_t t44 = t9 * t16 + t6 * t18;
-    const puma560_real_t t45 = t44 - parameters[YZ4];
-    const puma560_real_t t46 = t21 * t45 - t15 * t43;
-    const puma560_real_t t47 = t38 + t39;
+    const puma560_real_t t43 = t8 + t9 * t10 - parameters[XZ4]; /* link j5: inertia of it and all beyond */
+    const puma560_real_t t44 = t9 * t16 + t6 * t18; /* link j5: column of the mass matrix */
+    const puma560_real_t t45 = t44 - parameters[YZ4]; /* link j5: inertia of it and all beyond */
+    const puma560_real_t t46 = t21 * t45 - t15 * t43; /* link j4: column of the mass matrix */
+    const puma560_real_t t47 = t38 + t39; /* link j4: inertia of it and all beyond */
     const puma560_real_t t48 = parameters[XY3] + (t46 + (PUMA560_C(-0.0203) * t28
         + PUMA560_C(-0.4318) * t47));
+    /* link j3: inertia of it and all beyond */
     const puma560_real_t t50 = t42 * (t32 - t41) - t48 * (PUMA560_C(2.0) * t49);
     const puma560_real_t t51 = t42 * t50;
-    const puma560_real_t t52 = t15 * t35 - t21 * t37;
-    const puma560_real_t t53 = parameters[MZ3] + t52;
+    const puma560_real_t t52 = t15 * t35 - t21 * t37; /* link j4: column of the mass matrix */
+    const puma560_real_t t53 = parameters[MZ3] + t52; /* link j4: inertia of it and all beyond */
     const puma560_real_t t54 = parameters[M3] + t29;
+    /* link j3: inertia of it and all beyond */
     const puma560_real_t t55 = PUMA560_C(0.1254) * (PUMA560_C(0.1254) * t54 + PUMA560_C(2.0) * t53);
     const puma560_real_t t56 = parameters[XX2] + (t41 + t51 + t55);
-    const puma560_real_t t57 = parameters[MX3] + t47;
+    const puma560_real_t t57 = parameters[MX3] + t47; /* link j4: inertia of it and all beyond */
     const puma560_real_t t58 = parameters[MY3] + (t28 + t30);
-    const puma560_real_t t59 = t42 * t57 - t49 * t58;
-    const puma560_real_t t60 = PUMA560_C(0.4318) * t54;
+    const puma560_real_t t59 = t42 * t57 - t49 * t58; /* link j3: column of the mass matrix */
+    const puma560_real_t t60 = PUMA560_C(0.4318) * t54; /* link j3: inertia of it and all beyond */
     const puma560_real_t t61 = PUMA560_C(0.4318) * (t60 + PUMA560_C(2.0) * t59);
+    /* link j2: inertia of it and all beyond */
     const puma560_real_t t63 = t62 * (parameters[YY2] + (t32 - t51 + (t61 + t55)) - t56);
-    const puma560_real_t t64 = t42 * t58 + t49 * t57;
+    const puma560_real_t t64 = t42 * t58 + t49 * t57; /* link j3: column of the mass matrix */
+    /* link j2: inertia of it and all beyond */
     const puma560_real_t t66 = (parameters[XY2] + (t48 + t49 * t50
         + PUMA560_C(-0.4318) * t64)) * (PUMA560_C(2.0) * t65);
     const puma560_real_t t67 = parameters[ZZ1] + (t56 + t62 * (t63 + t66))
         + PUMA560_C(3920.14984321) * parameters[IA1];
     out[0] = t67;
+    /* link j4: inertia of it and all beyond */
     const puma560_real_t t68 = t20 + t21 * t22 + PUMA560_C(0.0203) * t52 - parameters[XZ3];
+    /* link j4: column of the mass matrix */
     const puma560_real_t t69 = t21 * t43 + t15 * t45 + PUMA560_C(-0.4318) * t52;
-    const puma560_real_t t70 = parameters[YZ3] + t69;
-    const puma560_real_t t71 = t42 * t68 + t49 * t70;
+    const puma560_real_t t70 = parameters[YZ3] + t69; /* link j4: inertia of it and all beyond */
+    const puma560_real_t t71 = t42 * t68 + t49 * t70; /* link j3: column of the mass matrix */
+    /* link j3: inertia of it and all beyond */
     const puma560_real_t t72 = t71 + (PUMA560_C(0.4318) * t53 + PUMA560_C(0.1254) * (t59 + t60))
         - parameters[XZ2];
+    /* link j3: column of the mass matrix */
     const puma560_real_t t73 = t49 * t68 - t42 * t70 + PUMA560_C(0.1254) * t64;
+    /* link j2: column of the mass matrix */
     const puma560_real_t t74 = t65 * t72 + t62 * (t73 - parameters[YZ2]);
     out[1] = t74;
+    /* link j3: column of the mass matrix */
     const puma560_real_t t75 = t65 * (t71 + PUMA560_C(0.1254) * t59) + t62 * t73;
     out[2] = t75;
-    const puma560_real_t t76 = PUMA560_C(-0.4318) * t38;
+    const puma560_real_t t76 = PUMA560_C(-0.4318) * t38; /* link j4: column of the mass matrix */
     const puma560_real_t t77 = t46 + t76;
     const puma560_real_t t78 = t33 - PUMA560_C(-0.0203) * t38;
     const puma560_real_t t79 = t49 * t52;
@@ -220,7 +240,7 @@ int puma560_mass_matrix_standard(
     const puma560_real_t t81 = t76 + PUMA560_C(-0.1254) * (t42 * t52) - (t49 * t77 + t42 * t78);
     const puma560_real_t t82 = t80 + t62 * t81;
     out[3] = t82;
-    const puma560_real_t t83 = t21 * t27;
+    const puma560_real_t t83 = t21 * t27; /* link j5: column of the mass matrix */
     const puma560_real_t t84 = PUMA560_C(0.4318) * t83;
     const puma560_real_t t85 = t15 * t19 - t21 * t13 - t84;
     const puma560_real_t t86 = t44 - PUMA560_C(0.0203) * t83;
@@ -230,7 +250,7 @@ int puma560_mass_matrix_standard(
     const puma560_real_t t90 = t49 * t85 - t42 * t86 + (t84 + PUMA560_C(0.1254) * (t42 * t87 + t49 * t36));
     const puma560_real_t t91 = t89 + t62 * t90;
     out[4] = t91;
-    const puma560_real_t t92 = t6 * t7 + t9 * parameters[ZZ6];
+    const puma560_real_t t92 = t6 * t7 + t9 * parameters[ZZ6]; /* link j6: column of the mass matrix */
     const puma560_real_t t93 = t6 * t34;
     const puma560_real_t t94 = t21 * t93 - t15 * t24;
     const puma560_real_t t95 = PUMA560_C(0.4318) * t94;
@@ -245,15 +265,18 @@ int puma560_mass_matrix_standard(
     const puma560_real_t t104 = t103 + t62 * t101;
     out[5] = t104;
     out[6] = t74;
+    /* link j4: inertia of it and all beyond */
     const puma560_real_t t105 = parameters[ZZ3] + (t12 - t23 + (t40 + t31));
     out[7] = parameters[ZZ2] + (t105 + t61) + PUMA560_C(11624.074225) * parameters[IA2];
-    const puma560_real_t t106 = t105 + PUMA560_C(0.4318) * t59;
+    const puma560_real_t t106 = t105 + PUMA560_C(0.4318) * t59; /* link j3: column of the mass matrix */
     out[8] = t106;
-    const puma560_real_t t107 = t69 + PUMA560_C(0.4318) * t79;
+    const puma560_real_t t107 = t69 + PUMA560_C(0.4318) * t79; /* link j4: column of the mass matrix */
     out[9] = t107;
+    /* link j5: column of the mass matrix */
     const puma560_real_t t108 = t21 * t19 + t15 * t13 + (PUMA560_C(0.0203) * t36 + PUMA560_C(0.4318) * t87);
     const puma560_real_t t109 = t108 + PUMA560_C(0.4318) * t88;
     out[10] = t109;
+    /* link j6: column of the mass matrix */
     const puma560_real_t t110 = t21 * t92 - t15 * t17 + (PUMA560_C(-0.0203) * t100 + PUMA560_C(0.4318) * t99);
     const puma560_real_t t111 = t110 + PUMA560_C(-0.4318) * t102;
     out[11] = t111;

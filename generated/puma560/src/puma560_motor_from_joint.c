@@ -26,11 +26,11 @@
  */
 #include "puma560_private.h"
 
-#if PUMA560_GENERATION != 0xAC9DC6F4UL
+#if PUMA560_GENERATION != 0x0486C622UL
 #error "puma560.h and puma560_motor_from_joint.c are of different generations: generate the arm again"
 #endif
 
-int puma560_motor_from_joint(
+puma560_status_t puma560_motor_from_joint(
     const puma560_real_t q[PUMA560_N_JOINTS],
     const puma560_real_t dq[PUMA560_N_JOINTS],
     const puma560_real_t ddq[PUMA560_N_JOINTS],
@@ -38,7 +38,7 @@ int puma560_motor_from_joint(
     puma560_real_t dq_m[PUMA560_N_JOINTS],
     puma560_real_t ddq_m[PUMA560_N_JOINTS])
 {
-    int status = PUMA560_STATUS_OK;
+    puma560_status_t status = PUMA560_STATUS_OK;
 
     if (!puma560_within_joints(q, PUMA560_C(1.0e8))
         || !puma560_within_joints(dq, PUMA560_C(1.0e10))

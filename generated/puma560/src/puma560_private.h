@@ -13,7 +13,7 @@
 
 #include "puma560.h"
 
-#if PUMA560_GENERATION != 0xAC9DC6F4UL
+#if PUMA560_GENERATION != 0x0486C622UL
 #error "puma560.h and puma560_private.h are of different generations: generate the arm again"
 #endif
 

@@ -6,7 +6,7 @@
  * Arm puma560, description e8eb13fe224405b2.
  * SPDX-License-Identifier: 0BSD
  *
- * Operations: 757 (470 mul, 283 add, 4 neg), 10 trig, 6 other.
+ * Operations: 757 (470 mul, 283 add, 4 neg), 10 trig, 6 other calls (sign, select and the like).
  *
  * @param[in]   q    [6]    [rad]                          joint coordinates; norm at most 10000
  * @param[in]   dq   [6]    [rad/s]                        joint velocities; norm at most 100000
@@ -33,17 +33,17 @@
  */
 #include "puma560_private.h"
 
-#if PUMA560_GENERATION != 0xAC9DC6F4UL
+#if PUMA560_GENERATION != 0x0486C622UL
 #error "puma560.h and puma560_regressor.c are of different generations: generate the arm again"
 #endif
 
-int puma560_regressor(
+puma560_status_t puma560_regressor(
     const puma560_real_t q[PUMA560_N_JOINTS],
     const puma560_real_t dq[PUMA560_N_JOINTS],
     const puma560_real_t ddq[PUMA560_N_JOINTS],
     puma560_real_t out[PUMA560_N_JOINTS * PUMA560_N_PARAMETERS])
 {
-    int status = PUMA560_STATUS_OK;
+    puma560_status_t status = PUMA560_STATUS_OK;
 
     if (!puma560_within_joints(q, PUMA560_C(1.0e8))
         || !puma560_within_joints(dq, PUMA560_C(1.0e10))
@@ -66,25 +66,27 @@ int puma560_regressor(
     puma560_real_t t173, t174;
     PUMA560_SINCOS(q[5], &t173, &t174);
     out[0] = PUMA560_C(-0.06944177768728742) * ddq[0];
-    const puma560_real_t t1 = t0 * dq[0];
+    const puma560_real_t t1 = t0 * dq[0]; /* link j2: motion */
     const puma560_real_t t2 = dq[1] * t1;
     const puma560_real_t t4 = t3 * ddq[0];
     const puma560_real_t t5 = t2 + t4;
+    /* link j2: velocities by those of the joints */
     const puma560_real_t t6 = PUMA560_C(-0.06944177768728742) * t3;
-    const puma560_real_t t7 = t3 * dq[0];
+    const puma560_real_t t7 = t3 * dq[0]; /* link j2: motion */
     const puma560_real_t t8 = dq[1] * t7;
+    /* link j2: velocities by those of the joints */
     const puma560_real_t t9 = PUMA560_C(0.06944177768728742) * t0;
-    const puma560_real_t t10 = t8 * t9;
+    const puma560_real_t t10 = t8 * t9; /* link j2: columns */
     out[1] = t5 * t6 - t10;
-    const puma560_real_t t11 = t7 * t1;
+    const puma560_real_t t11 = t7 * t1; /* link j2: motion */
     out[53] = PUMA560_C(-0.04032672714331514) * t11;
     const puma560_real_t t12 = t0 * ddq[0];
-    const puma560_real_t t13 = t8 + (t8 - t12);
+    const puma560_real_t t13 = t8 + (t8 - t12); /* link j3: motion */
     out[2] = -((t2 + t5) * t9 + t13 * t6);
-    const puma560_real_t t14 = t7 * t7;
+    const puma560_real_t t14 = t7 * t7; /* link j2: motion */
     const puma560_real_t t15 = t1 * t1;
     out[54] = PUMA560_C(0.04032672714331514) * (t14 - t15);
-    const puma560_real_t t16 = ddq[1] + t11;
+    const puma560_real_t t16 = ddq[1] + t11; /* link j3: motion */
     const puma560_real_t t17 = dq[1] * dq[1];
     out[3] = (t17 - t14) * t9 - t16 * t6;
     out[55] = PUMA560_C(-0.04032672714331514) * t4;
@@ -101,32 +103,32 @@ int puma560_regressor(
     const puma560_real_t t24 = t3 * t19 + t0 * t18;
     const puma560_real_t t25 = ddq[0] * t24;
     const puma560_real_t t26 = t23 + t25;
-    const puma560_real_t t27 = t18 * t9 - t19 * t6;
-    const puma560_real_t t28 = dq[0] * t24;
+    const puma560_real_t t27 = t18 * t9 - t19 * t6; /* link j3: velocities by those of the joints */
+    const puma560_real_t t28 = dq[0] * t24; /* link j3: motion */
     const puma560_real_t t29 = t22 * t28;
-    const puma560_real_t t30 = t18 * t6 + t19 * t9;
-    const puma560_real_t t31 = t29 * t30;
+    const puma560_real_t t30 = t18 * t6 + t19 * t9; /* link j3: velocities by those of the joints */
+    const puma560_real_t t31 = t29 * t30; /* link j3: columns */
     out[8] = -(t26 * t27 + t31);
-    const puma560_real_t t32 = t28 * t21;
+    const puma560_real_t t32 = t28 * t21; /* link j3: motion */
     out[60] = PUMA560_C(-0.04032672714331514) * t32;
     out[112] = PUMA560_C(0.08095560645504385) * t32;
-    const puma560_real_t t33 = t23 + t26;
-    const puma560_real_t t34 = ddq[0] * t20;
+    const puma560_real_t t33 = t23 + t26; /* link j4: motion */
+    const puma560_real_t t34 = ddq[0] * t20; /* link j3: motion */
     const puma560_real_t t35 = t29 - t34;
-    const puma560_real_t t36 = t29 + t35;
+    const puma560_real_t t36 = t29 + t35; /* link j4: motion */
     out[9] = t36 * t27 - t33 * t30;
-    const puma560_real_t t37 = t28 * t28;
+    const puma560_real_t t37 = t28 * t28; /* link j3: motion */
     const puma560_real_t t38 = t21 * t21;
-    const puma560_real_t t39 = t37 - t38;
+    const puma560_real_t t39 = t37 - t38; /* link j3: force and moment */
     out[61] = PUMA560_C(0.04032672714331514) * t39;
     out[113] = PUMA560_C(-0.08095560645504385) * t39;
-    const puma560_real_t t40 = ddq[1] + ddq[2];
-    const puma560_real_t t41 = t32 + t40;
-    const puma560_real_t t42 = t22 * t22;
+    const puma560_real_t t40 = ddq[1] + ddq[2]; /* link j3: motion */
+    const puma560_real_t t41 = t32 + t40; /* link j4: motion */
+    const puma560_real_t t42 = t22 * t22; /* link j3: motion */
     out[10] = t41 * t27 - (t37 - t42) * t30;
     out[62] = PUMA560_C(-0.04032672714331514) * t25;
     out[114] = PUMA560_C(0.08095560645504385) * t25;
-    const puma560_real_t t43 = t32 - t40;
+    const puma560_real_t t43 = t32 - t40; /* link j4: motion */
     out[11] = (t38 - t42) * t27 - t43 * t30;
     out[63] = PUMA560_C(-0.04032672714331514) * t34;
     out[115] = PUMA560_C(0.08095560645504385) * t34;
@@ -134,72 +136,77 @@ int puma560_regressor(
     out[64] = PUMA560_C(0.04032672714331514) * t40;
     out[116] = PUMA560_C(-0.08095560645504385) * t40;
     const puma560_real_t t44 = t42 + t38;
+    /* link j3: velocities by those of the joints */
     const puma560_real_t t45 = PUMA560_C(0.008707998921985843) * t0;
     const puma560_real_t t46 = PUMA560_C(0.008707998921985843) * t3;
     const puma560_real_t t47 = t18 * t46 - t19 * t45;
     const puma560_real_t t48 = t18 * t45 + t19 * t46;
     const puma560_real_t t49 = PUMA560_C(-0.029984959605370707) * t0;
+    /* link j3: motion */
     const puma560_real_t t50 = PUMA560_C(-0.1254) * (t14 + t15) + PUMA560_C(-0.4318) * t13;
-    const puma560_real_t t51 = t44 * t47 - t41 * t48 - t36 * t49 - t50 * t30;
+    const puma560_real_t t51 = t44 * t47 - t41 * t48 - t36 * t49 - t50 * t30; /* link j3: columns */
     out[13] = t51;
+    /* link j3: velocities by those of the joints */
     const puma560_real_t t52 = PUMA560_C(0.017413080780483477) * t18;
     const puma560_real_t t53 = PUMA560_C(-0.017413080780483477) * t19;
+    /* link j3: motion */
     const puma560_real_t t54 = PUMA560_C(9.81) * t3 + (PUMA560_C(0.4318) * (t17 + t15)
         + PUMA560_C(0.1254) * t12);
     const puma560_real_t t55 = PUMA560_C(-9.81) * t0 + (PUMA560_C(0.4318) * t16 + PUMA560_C(0.1254) * t4);
     const puma560_real_t t56 = t18 * t54 + t19 * t55;
     out[65] = PUMA560_C(0.04032672714331514) * t56 - (t44 * t52 + t41 * t53);
     out[117] = PUMA560_C(-0.08095560645504385) * t56;
-    const puma560_real_t t57 = t42 + t37;
-    const puma560_real_t t58 = t57 * t48 - t43 * t47 - t33 * t49 + t50 * t27;
+    const puma560_real_t t57 = t42 + t37; /* link j4: motion */
+    const puma560_real_t t58 = t57 * t48 - t43 * t47 - t33 * t49 + t50 * t27; /* link j3: columns */
     out[14] = t58;
-    const puma560_real_t t59 = t19 * t54 - t18 * t55;
+    const puma560_real_t t59 = t19 * t54 - t18 * t55; /* link j3: motion */
     out[66] = t43 * t52 + t57 * t53 + PUMA560_C(0.04032672714331514) * t59;
     out[118] = PUMA560_C(-0.08095560645504385) * t59;
-    const puma560_real_t t62 = t61 * t33 - t60 * t43;
+    const puma560_real_t t62 = t61 * t33 - t60 * t43; /* link j4: motion */
     const puma560_real_t t63 = t61 * t22 - t60 * t28;
     const puma560_real_t t64 = t21 - dq[3];
     const puma560_real_t t65 = t63 * t64;
     const puma560_real_t t66 = t65 - t62;
-    const puma560_real_t t67 = t61 * t27;
-    const puma560_real_t t68 = t60 * t22 + t61 * t28;
+    const puma560_real_t t67 = t61 * t27; /* link j4: velocities by those of the joints */
+    const puma560_real_t t68 = t60 * t22 + t61 * t28; /* link j4: motion */
     const puma560_real_t t69 = t68 * t64;
-    const puma560_real_t t70 = t60 * t27;
-    const puma560_real_t t71 = t69 * t70;
-    const puma560_real_t t72 = t68 * t63;
+    const puma560_real_t t70 = t60 * t27; /* link j4: velocities by those of the joints */
+    const puma560_real_t t71 = t69 * t70; /* link j4: columns */
+    const puma560_real_t t72 = t68 * t63; /* link j4: motion */
     out[15] = t66 * t67 - (t71 + t72 * t30);
+    /* link j4: velocities by those of the joints */
     const puma560_real_t t73 = PUMA560_C(-0.04032672714331514) * t60;
     const puma560_real_t t74 = PUMA560_C(0.04032672714331514) * t61;
-    const puma560_real_t t75 = t69 * t74;
+    const puma560_real_t t75 = t69 * t74; /* link j4: columns */
     const puma560_real_t t76 = t66 * t73 - t75;
     out[67] = t76;
     out[119] = PUMA560_C(-2.007492603288627) * t76;
     out[171] = PUMA560_C(-0.18787994020908783) * t72;
-    const puma560_real_t t77 = t65 + t66;
-    const puma560_real_t t78 = t61 * t43 + t60 * t33;
+    const puma560_real_t t77 = t65 + t66; /* link j5: motion */
+    const puma560_real_t t78 = t61 * t43 + t60 * t33; /* link j4: motion */
     const puma560_real_t t79 = t78 - t69;
-    const puma560_real_t t80 = t79 - t69;
-    const puma560_real_t t81 = t68 * t68;
+    const puma560_real_t t80 = t79 - t69; /* link j5: motion */
+    const puma560_real_t t81 = t68 * t68; /* link j4: motion */
     const puma560_real_t t82 = t63 * t63;
-    const puma560_real_t t83 = t81 - t82;
+    const puma560_real_t t83 = t81 - t82; /* link j4: force and moment */
     out[16] = t80 * t67 - t77 * t70 + t83 * t30;
-    const puma560_real_t t84 = t80 * t73 - t77 * t74;
+    const puma560_real_t t84 = t80 * t73 - t77 * t74; /* link j4: columns */
     out[68] = t84;
     out[120] = PUMA560_C(-2.007492603288627) * t84;
     out[172] = PUMA560_C(0.18787994020908783) * t83;
-    const puma560_real_t t85 = ddq[3] + t35;
-    const puma560_real_t t86 = t72 + t85;
-    const puma560_real_t t87 = t64 * t64;
-    const puma560_real_t t88 = t81 - t87;
+    const puma560_real_t t85 = ddq[3] + t35; /* link j4: motion */
+    const puma560_real_t t86 = t72 + t85; /* link j5: motion */
+    const puma560_real_t t87 = t64 * t64; /* link j4: motion */
+    const puma560_real_t t88 = t81 - t87; /* link j4: force and moment */
     out[17] = t86 * t67 - t62 * t30 + t88 * t70;
-    const puma560_real_t t89 = t86 * t73 + t88 * t74;
+    const puma560_real_t t89 = t86 * t73 + t88 * t74; /* link j4: columns */
     out[69] = t89;
     out[121] = PUMA560_C(-2.007492603288627) * t89;
     out[173] = PUMA560_C(-0.18787994020908783) * t62;
-    const puma560_real_t t90 = t72 - t85;
-    const puma560_real_t t91 = t82 - t87;
+    const puma560_real_t t90 = t72 - t85; /* link j5: motion */
+    const puma560_real_t t91 = t82 - t87; /* link j4: force and moment */
     out[18] = t78 * t30 + t90 * t70 + t91 * t67;
-    const puma560_real_t t92 = t90 * t74 + t91 * t73;
+    const puma560_real_t t92 = t90 * t74 + t91 * t73; /* link j4: columns */
     out[70] = t92;
     out[122] = PUMA560_C(-2.007492603288627) * t92;
     out[174] = PUMA560_C(0.18787994020908783) * t78;
@@ -208,30 +215,37 @@ int puma560_regressor(
     out[71] = t93;
     out[123] = PUMA560_C(-2.007492603288627) * t93;
     out[175] = PUMA560_C(0.18787994020908783) * t85;
-    const puma560_real_t t94 = t82 + t87;
+    const puma560_real_t t94 = t82 + t87; /* link j5: motion */
+    /* link j4: velocities by those of the joints */
     const puma560_real_t t95 = t49 + (PUMA560_C(0.4318) * t27 + PUMA560_C(-0.0203) * t30);
     const puma560_real_t t96 = t61 * t47 + t60 * t95;
     const puma560_real_t t97 = t61 * t95 - t60 * t47;
+    /* link j4: motion */
     const puma560_real_t t98 = t59 + (PUMA560_C(0.0203) * t44 + PUMA560_C(-0.4318) * t43);
     const puma560_real_t t99 = t50 + (PUMA560_C(-0.0203) * t36 + PUMA560_C(-0.4318) * t33);
     const puma560_real_t t100 = t61 * t99 - t60 * t98;
     const puma560_real_t t101 = t56 + (PUMA560_C(-0.4318) * t57 + PUMA560_C(0.0203) * t41);
+    /* link j4: columns */
     const puma560_real_t t102 = t94 * t96 - t86 * t97 + t80 * t48 + (t101 * t70 - t100 * t30);
     out[20] = t102;
+    /* link j4: velocities by those of the joints */
     const puma560_real_t t103 = t52 - PUMA560_C(0.017413080780483477);
     const puma560_real_t t104 = t61 * t103;
     const puma560_real_t t105 = t60 * t103;
     const puma560_real_t t106 = t53 - PUMA560_C(0.0008186325610092972);
-    const puma560_real_t t107 = t101 * t74;
+    const puma560_real_t t107 = t101 * t74; /* link j4: columns */
     const puma560_real_t t108 = t80 * t106 - (t94 * t104 + t86 * t105) + t107;
     out[72] = t108;
+    /* link j4: velocities by those of the joints */
     const puma560_real_t t109 = PUMA560_C(0.017413080780483477) * t61;
     const puma560_real_t t110 = PUMA560_C(0.017413080780483477) * t60;
+    /* link j4: columns */
     const puma560_real_t t111 = PUMA560_C(0.0008186325610092972) * t80 - (t94 * t109 + t86 * t110) - t107;
     out[124] = PUMA560_C(2.007492603288627) * t111;
     out[176] = PUMA560_C(-0.18787994020908783) * t100;
-    const puma560_real_t t112 = t81 + t87;
-    const puma560_real_t t113 = t61 * t98 + t60 * t99;
+    const puma560_real_t t112 = t81 + t87; /* link j5: motion */
+    const puma560_real_t t113 = t61 * t98 + t60 * t99; /* link j4: motion */
+    /* link j4: columns */
     const puma560_real_t t114 = t112 * t97 - t90 * t96 - t77 * t48 + (t101 * t67 + t113 * t30);
     out[21] = t114;
     const puma560_real_t t115 = t101 * t73;
@@ -240,56 +254,57 @@ int puma560_regressor(
     const puma560_real_t t117 = t90 * t109 + t112 * t110 + PUMA560_C(-0.0008186325610092972) * t77 - t115;
     out[125] = PUMA560_C(2.007492603288627) * t117;
     out[177] = PUMA560_C(0.18787994020908783) * t113;
-    const puma560_real_t t120 = t118 * t90 - t119 * t77;
+    const puma560_real_t t120 = t118 * t90 - t119 * t77; /* link j5: motion */
     const puma560_real_t t121 = t118 * t68 - t119 * t64;
     const puma560_real_t t122 = dq[4] + t63;
     const puma560_real_t t123 = t121 * t122;
     const puma560_real_t t124 = t123 - t120;
-    const puma560_real_t t125 = t119 * t67 + t118 * t30;
-    const puma560_real_t t126 = t119 * t68 + t118 * t64;
+    const puma560_real_t t125 = t119 * t67 + t118 * t30; /* link j5: velocities by those of the joints */
+    const puma560_real_t t126 = t119 * t68 + t118 * t64; /* link j5: motion */
     const puma560_real_t t127 = t126 * t122;
-    const puma560_real_t t128 = t119 * t30 - t118 * t67;
-    const puma560_real_t t129 = t127 * t128;
-    const puma560_real_t t130 = t126 * t121;
+    const puma560_real_t t128 = t119 * t30 - t118 * t67; /* link j5: velocities by those of the joints */
+    const puma560_real_t t129 = t127 * t128; /* link j5: columns */
+    const puma560_real_t t130 = t126 * t121; /* link j5: motion */
     out[22] = t124 * t125 + (t130 * t70 - t129);
-    const puma560_real_t t131 = t119 * t73;
+    const puma560_real_t t131 = t119 * t73; /* link j5: velocities by those of the joints */
     const puma560_real_t t132 = t118 * t73;
-    const puma560_real_t t133 = t127 * t132;
+    const puma560_real_t t133 = t127 * t132; /* link j5: columns */
     const puma560_real_t t134 = t124 * t131 + (t133 + t130 * t74);
     out[74] = t134;
     out[126] = PUMA560_C(-2.007492603288627) * t134;
+    /* link j5: velocities by those of the joints */
     const puma560_real_t t135 = PUMA560_C(0.18787994020908783) * t118;
     const puma560_real_t t136 = PUMA560_C(0.18787994020908783) * t119;
-    const puma560_real_t t137 = t127 * t136;
+    const puma560_real_t t137 = t127 * t136; /* link j5: columns */
     out[178] = t124 * t135 - t137;
     out[230] = PUMA560_C(0.19862511694053758) * t130;
-    const puma560_real_t t138 = t123 + t124;
-    const puma560_real_t t139 = t119 * t90 + t118 * t77;
+    const puma560_real_t t138 = t123 + t124; /* link j6: motion */
+    const puma560_real_t t139 = t119 * t90 + t118 * t77; /* link j5: motion */
     const puma560_real_t t140 = t127 - t139;
-    const puma560_real_t t141 = t127 + t140;
-    const puma560_real_t t142 = t126 * t126;
+    const puma560_real_t t141 = t127 + t140; /* link j6: motion */
+    const puma560_real_t t142 = t126 * t126; /* link j5: motion */
     const puma560_real_t t143 = t121 * t121;
-    const puma560_real_t t144 = t142 - t143;
+    const puma560_real_t t144 = t142 - t143; /* link j5: force and moment */
     out[23] = t138 * t128 + t141 * t125 + t144 * t70;
-    const puma560_real_t t145 = t141 * t131 - t138 * t132 + t144 * t74;
+    const puma560_real_t t145 = t141 * t131 - t138 * t132 + t144 * t74; /* link j5: columns */
     out[75] = t145;
     out[127] = PUMA560_C(-2.007492603288627) * t145;
     out[179] = t138 * t136 + t141 * t135;
     out[231] = PUMA560_C(0.19862511694053758) * t144;
-    const puma560_real_t t146 = ddq[4] - t79;
-    const puma560_real_t t147 = t130 - t146;
-    const puma560_real_t t148 = t122 * t122;
-    const puma560_real_t t149 = t148 - t142;
+    const puma560_real_t t146 = ddq[4] - t79; /* link j5: motion */
+    const puma560_real_t t147 = t130 - t146; /* link j6: motion */
+    const puma560_real_t t148 = t122 * t122; /* link j5: motion */
+    const puma560_real_t t149 = t148 - t142; /* link j5: force and moment */
     out[24] = t149 * t128 - (t147 * t125 + t120 * t70);
-    const puma560_real_t t150 = t147 * t131 + t120 * t74 + t149 * t132;
+    const puma560_real_t t150 = t147 * t131 + t120 * t74 + t149 * t132; /* link j5: columns */
     out[76] = -t150;
     out[128] = PUMA560_C(2.007492603288627) * t150;
     out[180] = t149 * t136 - t147 * t135;
     out[232] = PUMA560_C(-0.19862511694053758) * t120;
-    const puma560_real_t t151 = t130 + t146;
-    const puma560_real_t t152 = t143 - t148;
+    const puma560_real_t t151 = t130 + t146; /* link j6: motion */
+    const puma560_real_t t152 = t143 - t148; /* link j5: force and moment */
     out[25] = t151 * t128 - t139 * t70 + t152 * t125;
-    const puma560_real_t t153 = t152 * t131 - (t139 * t74 + t151 * t132);
+    const puma560_real_t t153 = t152 * t131 - (t139 * t74 + t151 * t132); /* link j5: columns */
     out[77] = t153;
     out[129] = PUMA560_C(-2.007492603288627) * t153;
     out[181] = t151 * t136 + t152 * t135;
@@ -300,25 +315,28 @@ int puma560_regressor(
     out[130] = PUMA560_C(-2.007492603288627) * t154;
     out[182] = t137 + t123 * t135;
     out[234] = PUMA560_C(0.19862511694053758) * t146;
-    const puma560_real_t t155 = t119 * t48 - t118 * t96;
-    const puma560_real_t t156 = t143 + t148;
-    const puma560_real_t t157 = t119 * t96 + t118 * t48;
-    const puma560_real_t t158 = t118 * t113 + t119 * t101;
+    const puma560_real_t t155 = t119 * t48 - t118 * t96; /* link j5: velocities by those of the joints */
+    const puma560_real_t t156 = t143 + t148; /* link j6: motion */
+    const puma560_real_t t157 = t119 * t96 + t118 * t48; /* link j5: velocities by those of the joints */
+    const puma560_real_t t158 = t118 * t113 + t119 * t101; /* link j5: motion */
+    /* link j5: columns */
     const puma560_real_t t159 = t156 * t157 + t147 * t155 - t141 * t97 + (t158 * t70 - t100 * t128);
     out[27] = t159;
-    const puma560_real_t t160 = t118 * t104 + t119 * t106;
+    const puma560_real_t t160 = t118 * t104 + t119 * t106; /* link j5: velocities by those of the joints */
     const puma560_real_t t161 = t118 * t106 - t119 * t104;
-    const puma560_real_t t162 = t100 * t132 + t158 * t74;
+    const puma560_real_t t162 = t100 * t132 + t158 * t74; /* link j5: columns */
     const puma560_real_t t163 = t156 * t161 + t147 * t160 - t141 * t105 + t162;
     out[79] = t163;
+    /* link j5: velocities by those of the joints */
     const puma560_real_t t164 = t118 * t109 + PUMA560_C(0.0008186325610092972) * t119;
     const puma560_real_t t165 = PUMA560_C(0.0008186325610092972) * t118 - t119 * t109;
-    const puma560_real_t t166 = t156 * t165 + t147 * t164 - t141 * t110 - t162;
+    const puma560_real_t t166 = t156 * t165 + t147 * t164 - t141 * t110 - t162; /* link j5: columns */
     out[131] = PUMA560_C(2.007492603288627) * t166;
     out[183] = -(t100 * t136);
     out[235] = PUMA560_C(0.19862511694053758) * t158;
-    const puma560_real_t t167 = t142 + t148;
-    const puma560_real_t t168 = t119 * t113 - t118 * t101;
+    const puma560_real_t t167 = t142 + t148; /* link j6: motion */
+    const puma560_real_t t168 = t119 * t113 - t118 * t101; /* link j5: motion */
+    /* link j5: columns */
     const puma560_real_t t169 = t151 * t157 + t167 * t155 + t138 * t97 + (t100 * t125 + t168 * t70);
     out[28] = t169;
     const puma560_real_t t170 = t100 * t131 + t168 * t74;
@@ -328,61 +346,62 @@ int puma560_regressor(
     out[132] = PUMA560_C(2.007492603288627) * t172;
     out[184] = t100 * t135;
     out[236] = PUMA560_C(0.19862511694053758) * t168;
-    const puma560_real_t t175 = t173 * t151 - t174 * t138;
+    const puma560_real_t t175 = t173 * t151 - t174 * t138; /* link j6: motion */
     const puma560_real_t t176 = t173 * t126 - t174 * t122;
     const puma560_real_t t177 = dq[5] + t121;
     const puma560_real_t t178 = t176 * t177;
     const puma560_real_t t179 = t175 - t178;
-    const puma560_real_t t180 = t174 * t125 - t173 * t70;
-    const puma560_real_t t181 = t174 * t126 + t173 * t122;
+    const puma560_real_t t180 = t174 * t125 - t173 * t70; /* link j6: velocities by those of the joints */
+    const puma560_real_t t181 = t174 * t126 + t173 * t122; /* link j6: motion */
     const puma560_real_t t182 = t181 * t177;
-    const puma560_real_t t183 = t173 * t125 + t174 * t70;
-    const puma560_real_t t184 = t182 * t183;
-    const puma560_real_t t185 = t181 * t176;
+    const puma560_real_t t183 = t173 * t125 + t174 * t70; /* link j6: velocities by those of the joints */
+    const puma560_real_t t184 = t182 * t183; /* link j6: columns */
+    const puma560_real_t t185 = t181 * t176; /* link j6: motion */
     out[29] = t184 + t185 * t128 - t179 * t180;
-    const puma560_real_t t186 = t174 * t131 - t173 * t74;
+    const puma560_real_t t186 = t174 * t131 - t173 * t74; /* link j6: velocities by those of the joints */
     const puma560_real_t t187 = t173 * t131 + t174 * t74;
-    const puma560_real_t t188 = t182 * t187;
+    const puma560_real_t t188 = t182 * t187; /* link j6: columns */
     const puma560_real_t t189 = t188 - t185 * t132 - t179 * t186;
     out[81] = t189;
     out[133] = PUMA560_C(-2.007492603288627) * t189;
-    const puma560_real_t t190 = t174 * t135;
+    const puma560_real_t t190 = t174 * t135; /* link j6: velocities by those of the joints */
     const puma560_real_t t191 = t173 * t135;
-    const puma560_real_t t192 = t182 * t191;
+    const puma560_real_t t192 = t182 * t191; /* link j6: columns */
     out[185] = t192 + t185 * t136 - t179 * t190;
+    /* link j6: velocities by those of the joints */
     const puma560_real_t t193 = PUMA560_C(-0.19862511694053758) * t173;
     const puma560_real_t t194 = PUMA560_C(0.19862511694053758) * t174;
-    const puma560_real_t t195 = t182 * t194;
+    const puma560_real_t t195 = t182 * t194; /* link j6: columns */
     out[237] = t195 - t179 * t193;
     out[289] = PUMA560_C(0.1862884266452062) * t185;
-    const puma560_real_t t196 = t179 - t178;
-    const puma560_real_t t197 = t174 * t151 + t173 * t138;
-    const puma560_real_t t198 = t182 + (t182 - t197);
-    const puma560_real_t t199 = t181 * t181;
+    const puma560_real_t t196 = t179 - t178; /* link j6: force and moment */
+    const puma560_real_t t197 = t174 * t151 + t173 * t138; /* link j6: motion */
+    const puma560_real_t t198 = t182 + (t182 - t197); /* link j6: force and moment */
+    const puma560_real_t t199 = t181 * t181; /* link j6: motion */
     const puma560_real_t t200 = t176 * t176;
-    const puma560_real_t t201 = t199 - t200;
+    const puma560_real_t t201 = t199 - t200; /* link j6: force and moment */
     out[30] = t196 * t183 + t198 * t180 + t201 * t128;
-    const puma560_real_t t202 = t196 * t187 + t198 * t186 - t201 * t132;
+    const puma560_real_t t202 = t196 * t187 + t198 * t186 - t201 * t132; /* link j6: columns */
     out[82] = t202;
     out[134] = PUMA560_C(-2.007492603288627) * t202;
     out[186] = t196 * t191 + t198 * t190 + t201 * t136;
     out[238] = t196 * t194 + t198 * t193;
     out[290] = PUMA560_C(0.1862884266452062) * t201;
-    const puma560_real_t t203 = ddq[5] + t140;
-    const puma560_real_t t204 = t203 - t185;
-    const puma560_real_t t205 = t177 * t177;
-    const puma560_real_t t206 = t199 - t205;
+    const puma560_real_t t203 = ddq[5] + t140; /* link j6: motion */
+    const puma560_real_t t204 = t203 - t185; /* link j6: force and moment */
+    const puma560_real_t t205 = t177 * t177; /* link j6: motion */
+    const puma560_real_t t206 = t199 - t205; /* link j6: force and moment */
     out[31] = t204 * t180 - t175 * t128 + t206 * t183;
-    const puma560_real_t t207 = t204 * t186 + t175 * t132 + t206 * t187;
+    const puma560_real_t t207 = t204 * t186 + t175 * t132 + t206 * t187; /* link j6: columns */
     out[83] = t207;
     out[135] = PUMA560_C(-2.007492603288627) * t207;
     out[187] = t204 * t190 - t175 * t136 + t206 * t191;
     out[239] = t204 * t193 + t206 * t194;
     out[291] = PUMA560_C(-0.1862884266452062) * t175;
-    const puma560_real_t t208 = t185 + t203;
+    const puma560_real_t t208 = t185 + t203; /* link j6: force and moment */
     const puma560_real_t t209 = t200 - t205;
     out[32] = t209 * t180 - (t197 * t128 + t208 * t183);
-    const puma560_real_t t210 = t197 * t132 - t208 * t187 + t209 * t186;
+    const puma560_real_t t210 = t197 * t132 - t208 * t187 + t209 * t186; /* link j6: columns */
     out[84] = t210;
     out[136] = PUMA560_C(-2.007492603288627) * t210;
     out[188] = t209 * t190 - (t197 * t136 + t208 * t191);
@@ -395,10 +414,11 @@ int puma560_regressor(
     out[189] = t203 * t136 - (t192 - t178 * t190);
     out[241] = t178 * t193 - t195;
     out[293] = PUMA560_C(0.1862884266452062) * t203;
-    const puma560_real_t t212 = t200 + t205;
-    const puma560_real_t t213 = t173 * t204 + t174 * t212;
+    const puma560_real_t t212 = t200 + t205; /* link j6: force and moment */
+    const puma560_real_t t213 = t173 * t204 + t174 * t212; /* link j6: columns */
     const puma560_real_t t214 = t173 * t212 - t174 * t204;
-    const puma560_real_t t215 = t173 * t168 - t174 * t100;
+    const puma560_real_t t215 = t173 * t168 - t174 * t100; /* link j6: motion */
+    /* link j6: columns */
     const puma560_real_t t216 = t158 * t183 + t215 * t128 + (t198 * t155 + t213 * t157 + t214 * t97);
     out[34] = t216;
     const puma560_real_t t217 = t215 * t132 - t158 * t187;
@@ -409,10 +429,11 @@ int puma560_regressor(
     out[190] = t158 * t191 + t215 * t136;
     out[242] = t158 * t194;
     out[294] = PUMA560_C(0.1862884266452062) * t215;
-    const puma560_real_t t220 = t199 + t205;
-    const puma560_real_t t221 = t173 * t220 - t174 * t208;
+    const puma560_real_t t220 = t199 + t205; /* link j6: force and moment */
+    const puma560_real_t t221 = t173 * t220 - t174 * t208; /* link j6: columns */
     const puma560_real_t t222 = t173 * t208 + t174 * t220;
-    const puma560_real_t t223 = t174 * t168 + t173 * t100;
+    const puma560_real_t t223 = t174 * t168 + t173 * t100; /* link j6: motion */
+    /* link j6: columns */
     const puma560_real_t t224 = t158 * t180 + t223 * t128 + (t196 * t155 - t221 * t157 + t222 * t97);
     out[35] = t224;
     const puma560_real_t t225 = t223 * t132 - t158 * t186;
@@ -424,25 +445,25 @@ int puma560_regressor(
     out[243] = t158 * t193;
     out[295] = PUMA560_C(0.1862884266452062) * t223;
     out[36] = PUMA560_C(-272.2221739130435) * dq[0];
-    const puma560_real_t t228 = puma560_sign(dq[0]);
+    const puma560_real_t t228 = puma560_sign(dq[0]); /* joint j1: coulomb_friction */
     out[37] = PUMA560_C(-4.3478260869565215) * t228;
     out[90] = PUMA560_C(468.7608695652174) * dq[1];
-    const puma560_real_t t229 = puma560_sign(dq[1]);
+    const puma560_real_t t229 = puma560_sign(dq[1]); /* joint j2: coulomb_friction */
     out[91] = PUMA560_C(4.3478260869565215) * t229;
     out[144] = PUMA560_C(-233.50565217391303) * dq[2];
-    const puma560_real_t t230 = puma560_sign(dq[2]);
+    const puma560_real_t t230 = puma560_sign(dq[2]); /* joint j3: coulomb_friction */
     out[145] = PUMA560_C(-4.3478260869565215) * t230;
     out[146] = PUMA560_C(-233.50565217391303) * ddq[2];
     out[199] = PUMA560_C(1086.2342857142855) * dq[3];
-    const puma560_real_t t231 = puma560_sign(dq[3]);
+    const puma560_real_t t231 = puma560_sign(dq[3]); /* joint j4: coulomb_friction */
     out[200] = PUMA560_C(14.285714285714285) * t231;
     out[201] = PUMA560_C(1086.2342857142855) * ddq[3];
     out[254] = PUMA560_C(1027.4714285714285) * dq[4];
-    const puma560_real_t t232 = puma560_sign(dq[4]);
+    const puma560_real_t t232 = puma560_sign(dq[4]); /* joint j5: coulomb_friction */
     out[255] = PUMA560_C(14.285714285714285) * t232;
     out[256] = PUMA560_C(1027.4714285714285) * ddq[4];
     out[309] = PUMA560_C(1095.5142857142857) * dq[5];
-    const puma560_real_t t233 = puma560_sign(dq[5]);
+    const puma560_real_t t233 = puma560_sign(dq[5]); /* joint j6: coulomb_friction */
     out[310] = PUMA560_C(14.285714285714285) * t233;
     out[311] = PUMA560_C(1095.5142857142857) * ddq[5];
     /* always zero */

@@ -6,7 +6,7 @@
  * Arm puma560, description e8eb13fe224405b2.
  * SPDX-License-Identifier: 0BSD
  *
- * Operations: 844 (506 mul, 323 add, 15 neg), 10 trig, 6 other.
+ * Operations: 844 (506 mul, 323 add, 15 neg), 10 trig, 6 other calls (sign, select and the like).
  *
  * @param[in]   q    [6]    [rad]                          joint coordinates; norm at most 10000
  * @param[in]   dq   [6]    [rad/s]                        joint velocities; norm at most 100000
@@ -35,17 +35,17 @@
  */
 #include "puma560_private.h"
 
-#if PUMA560_GENERATION != 0xAC9DC6F4UL
+#if PUMA560_GENERATION != 0x0486C622UL
 #error "puma560.h and puma560_regressor_standard.c are of different generations: generate the arm again"
 #endif
 
-int puma560_regressor_standard(
+puma560_status_t puma560_regressor_standard(
     const puma560_real_t q[PUMA560_N_JOINTS],
     const puma560_real_t dq[PUMA560_N_JOINTS],
     const puma560_real_t ddq[PUMA560_N_JOINTS],
     puma560_real_t out[PUMA560_N_JOINTS * PUMA560_N_STANDARD_PARAMETERS])
 {
-    int status = PUMA560_STATUS_OK;
+    puma560_status_t status = PUMA560_STATUS_OK;
 
     if (!puma560_within_joints(q, PUMA560_C(1.0e8))
         || !puma560_within_joints(dq, PUMA560_C(1.0e10))
@@ -69,29 +69,31 @@ int puma560_regressor_standard(
     PUMA560_SINCOS(q[5], &t209, &t210);
     const puma560_real_t t0 = PUMA560_C(-0.06944177768728742) * ddq[0];
     out[5] = t0;
-    const puma560_real_t t2 = t1 * ddq[0];
+    const puma560_real_t t2 = t1 * ddq[0]; /* link j2: motion */
     const puma560_real_t t4 = t3 * dq[0];
     const puma560_real_t t5 = dq[1] * t4;
     const puma560_real_t t6 = t2 + t5;
+    /* link j2: velocities by those of the joints */
     const puma560_real_t t7 = PUMA560_C(0.06944177768728742) * t1;
-    const puma560_real_t t8 = t1 * dq[0];
+    const puma560_real_t t8 = t1 * dq[0]; /* link j2: motion */
     const puma560_real_t t9 = dq[1] * t8;
+    /* link j2: velocities by those of the joints */
     const puma560_real_t t10 = PUMA560_C(0.06944177768728742) * t3;
-    const puma560_real_t t11 = t9 * t10;
+    const puma560_real_t t11 = t9 * t10; /* link j2: columns */
     const puma560_real_t t12 = t6 * t7 + t11;
     out[10] = -t12;
-    const puma560_real_t t13 = t8 * t4;
+    const puma560_real_t t13 = t8 * t4; /* link j2: motion */
     const puma560_real_t t14 = PUMA560_C(0.04032672714331514) * t13;
     out[88] = -t14;
     const puma560_real_t t15 = t3 * ddq[0];
-    const puma560_real_t t16 = t9 - (t15 - t9);
+    const puma560_real_t t16 = t9 - (t15 - t9); /* link j3: motion */
     out[11] = t16 * t7 - (t5 + t6) * t10;
-    const puma560_real_t t17 = t8 * t8;
+    const puma560_real_t t17 = t8 * t8; /* link j2: motion */
     const puma560_real_t t18 = t4 * t4;
     out[89] = PUMA560_C(0.04032672714331514) * (t17 - t18);
-    const puma560_real_t t19 = ddq[1] + t13;
-    const puma560_real_t t20 = dq[1] * dq[1];
-    const puma560_real_t t21 = t19 * t7 + (t20 - t17) * t10;
+    const puma560_real_t t19 = ddq[1] + t13; /* link j3: motion */
+    const puma560_real_t t20 = dq[1] * dq[1]; /* link j2: motion */
+    const puma560_real_t t21 = t19 * t7 + (t20 - t17) * t10; /* link j2: columns */
     out[12] = t21;
     out[90] = PUMA560_C(-0.04032672714331514) * t2;
     const puma560_real_t t22 = t0 + t12;
@@ -103,77 +105,81 @@ int puma560_regressor_standard(
     out[93] = PUMA560_C(0.04032672714331514) * ddq[1];
     out[94] = PUMA560_C(-0.39560519327592153) * t3;
     out[95] = PUMA560_C(0.39560519327592153) * t1;
-    const puma560_real_t t25 = t1 * t23 + t3 * t24;
+    const puma560_real_t t25 = t1 * t23 + t3 * t24; /* link j3: motion */
     const puma560_real_t t26 = ddq[0] * t25;
     const puma560_real_t t27 = t3 * t23 - t1 * t24;
     const puma560_real_t t28 = dq[0] * t27;
     const puma560_real_t t29 = dq[1] + dq[2];
     const puma560_real_t t30 = t28 * t29;
     const puma560_real_t t31 = t26 + t30;
-    const puma560_real_t t32 = t23 * t7 + t24 * t10;
-    const puma560_real_t t33 = dq[0] * t25;
+    const puma560_real_t t32 = t23 * t7 + t24 * t10; /* link j3: velocities by those of the joints */
+    const puma560_real_t t33 = dq[0] * t25; /* link j3: motion */
     const puma560_real_t t34 = t33 * t29;
-    const puma560_real_t t35 = t23 * t10 - t24 * t7;
-    const puma560_real_t t36 = t34 * t35;
+    const puma560_real_t t35 = t23 * t10 - t24 * t7; /* link j3: velocities by those of the joints */
+    const puma560_real_t t36 = t34 * t35; /* link j3: columns */
     const puma560_real_t t37 = t31 * t32 + t36;
     out[20] = -t37;
-    const puma560_real_t t38 = t33 * t28;
+    const puma560_real_t t38 = t33 * t28; /* link j3: motion */
     const puma560_real_t t39 = PUMA560_C(-0.04032672714331514) * t38;
     out[98] = t39;
     const puma560_real_t t40 = PUMA560_C(-0.08095560645504385) * t38;
     out[176] = -t40;
-    const puma560_real_t t41 = t30 + t31;
-    const puma560_real_t t42 = ddq[0] * t27;
+    const puma560_real_t t41 = t30 + t31; /* link j4: motion */
+    const puma560_real_t t42 = ddq[0] * t27; /* link j3: motion */
     const puma560_real_t t43 = t42 - t34;
-    const puma560_real_t t44 = t34 - t43;
-    const puma560_real_t t45 = t44 * t32 - t41 * t35;
+    const puma560_real_t t44 = t34 - t43; /* link j4: motion */
+    const puma560_real_t t45 = t44 * t32 - t41 * t35; /* link j3: columns */
     out[21] = t45;
-    const puma560_real_t t46 = t33 * t33;
+    const puma560_real_t t46 = t33 * t33; /* link j3: motion */
     const puma560_real_t t47 = t28 * t28;
-    const puma560_real_t t48 = t46 - t47;
+    const puma560_real_t t48 = t46 - t47; /* link j3: columns */
     out[99] = PUMA560_C(0.04032672714331514) * t48;
     out[177] = PUMA560_C(-0.08095560645504385) * t48;
-    const puma560_real_t t49 = ddq[1] + ddq[2];
-    const puma560_real_t t50 = t49 + t38;
-    const puma560_real_t t51 = t29 * t29;
+    const puma560_real_t t49 = ddq[1] + ddq[2]; /* link j3: motion */
+    const puma560_real_t t50 = t49 + t38; /* link j4: motion */
+    const puma560_real_t t51 = t29 * t29; /* link j3: motion */
     out[22] = t50 * t32 - (t46 - t51) * t35;
     out[100] = PUMA560_C(-0.04032672714331514) * t26;
     out[178] = PUMA560_C(0.08095560645504385) * t26;
-    const puma560_real_t t52 = t30 * t32;
+    const puma560_real_t t52 = t30 * t32; /* link j3: columns */
     out[23] = t52 - t43 * t35;
     out[101] = -t39;
     out[179] = t40;
-    const puma560_real_t t53 = t38 - t49;
+    const puma560_real_t t53 = t38 - t49; /* link j4: motion */
     out[24] = (t47 - t51) * t32 - t53 * t35;
     out[102] = PUMA560_C(-0.04032672714331514) * t42;
     out[180] = PUMA560_C(0.08095560645504385) * t42;
-    const puma560_real_t t54 = t36 - t52;
+    const puma560_real_t t54 = t36 - t52; /* link j3: columns */
     out[25] = t54;
     const puma560_real_t t55 = PUMA560_C(0.04032672714331514) * t49;
     out[103] = t55;
     out[181] = PUMA560_C(-0.08095560645504385) * t49;
-    const puma560_real_t t56 = t47 + t51;
+    const puma560_real_t t56 = t47 + t51; /* link j4: motion */
+    /* link j3: velocities by those of the joints */
     const puma560_real_t t57 = PUMA560_C(-0.008707998921985843) * t3;
     const puma560_real_t t58 = PUMA560_C(0.008707998921985843) * t1;
     const puma560_real_t t59 = t23 * t57 + t24 * t58;
     const puma560_real_t t60 = t23 * t58 - t24 * t57;
     const puma560_real_t t61 = PUMA560_C(-0.029984959605370707) * t3;
+    /* link j3: motion */
     const puma560_real_t t62 = PUMA560_C(-0.4318) * t16 + PUMA560_C(-0.1254) * (t17 + t18);
-    const puma560_real_t t63 = t56 * t59 - t50 * t60 - t44 * t61 - t62 * t35;
+    const puma560_real_t t63 = t56 * t59 - t50 * t60 - t44 * t61 - t62 * t35; /* link j3: columns */
     out[26] = t63;
+    /* link j3: velocities by those of the joints */
     const puma560_real_t t64 = PUMA560_C(0.017413080780483477) * t24;
     const puma560_real_t t65 = PUMA560_C(-0.017413080780483477) * t23;
+    /* link j3: motion */
     const puma560_real_t t66 = PUMA560_C(-9.81) * t1 + (PUMA560_C(-0.4318) * (t18 + t20)
         + PUMA560_C(-0.1254) * t15);
     const puma560_real_t t67 = PUMA560_C(-9.81) * t3 + (PUMA560_C(0.4318) * t19 + PUMA560_C(0.1254) * t2);
     const puma560_real_t t68 = t23 * t67 - t24 * t66;
     out[104] = PUMA560_C(0.04032672714331514) * t68 - (t56 * t64 + t50 * t65);
     out[182] = PUMA560_C(-0.08095560645504385) * t68;
-    const puma560_real_t t69 = t46 + t51;
-    const puma560_real_t t70 = t69 * t60 - t53 * t59 - t41 * t61 + t62 * t32;
+    const puma560_real_t t69 = t46 + t51; /* link j4: motion */
+    const puma560_real_t t70 = t69 * t60 - t53 * t59 - t41 * t61 + t62 * t32; /* link j3: columns */
     out[27] = t70;
-    const puma560_real_t t71 = t23 * t66 + t24 * t67;
-    const puma560_real_t t72 = PUMA560_C(-0.04032672714331514) * t71;
+    const puma560_real_t t71 = t23 * t66 + t24 * t67; /* link j3: motion */
+    const puma560_real_t t72 = PUMA560_C(-0.04032672714331514) * t71; /* link j3: columns */
     const puma560_real_t t73 = t53 * t64 + t69 * t65 + t72;
     out[105] = t73;
     out[183] = PUMA560_C(0.08095560645504385) * t71;
@@ -181,43 +187,44 @@ int puma560_regressor_standard(
     out[106] = PUMA560_C(0.017413080780483477) * t2;
     out[29] = t62 * t61 - (t71 * t59 + t68 * t60);
     out[107] = t71 * t64 - t68 * t65;
-    const puma560_real_t t76 = t75 * t41 - t74 * t53;
+    const puma560_real_t t76 = t75 * t41 - t74 * t53; /* link j4: motion */
     const puma560_real_t t77 = t75 * t29 - t74 * t33;
     const puma560_real_t t78 = t28 - dq[3];
     const puma560_real_t t79 = t77 * t78;
     const puma560_real_t t80 = t79 - t76;
-    const puma560_real_t t81 = t75 * t32;
-    const puma560_real_t t82 = t75 * t33 + t74 * t29;
+    const puma560_real_t t81 = t75 * t32; /* link j4: velocities by those of the joints */
+    const puma560_real_t t82 = t75 * t33 + t74 * t29; /* link j4: motion */
     const puma560_real_t t83 = t82 * t78;
-    const puma560_real_t t84 = t74 * t32;
-    const puma560_real_t t85 = t83 * t84;
-    const puma560_real_t t86 = t82 * t77;
-    const puma560_real_t t87 = t80 * t81 - (t85 + t86 * t35);
+    const puma560_real_t t84 = t74 * t32; /* link j4: velocities by those of the joints */
+    const puma560_real_t t85 = t83 * t84; /* link j4: columns */
+    const puma560_real_t t86 = t82 * t77; /* link j4: motion */
+    const puma560_real_t t87 = t80 * t81 - (t85 + t86 * t35); /* link j4: columns */
     out[30] = t87;
+    /* link j4: velocities by those of the joints */
     const puma560_real_t t88 = PUMA560_C(-0.04032672714331514) * t74;
     const puma560_real_t t89 = PUMA560_C(0.04032672714331514) * t75;
-    const puma560_real_t t90 = t83 * t89;
+    const puma560_real_t t90 = t83 * t89; /* link j4: columns */
     const puma560_real_t t91 = t80 * t88 - t90;
     out[108] = t91;
     out[186] = PUMA560_C(-2.007492603288627) * t91;
     const puma560_real_t t92 = PUMA560_C(-0.18787994020908783) * t86;
     out[264] = t92;
-    const puma560_real_t t93 = t79 + t80;
-    const puma560_real_t t94 = t75 * t53 + t74 * t41;
+    const puma560_real_t t93 = t79 + t80; /* link j5: motion */
+    const puma560_real_t t94 = t75 * t53 + t74 * t41; /* link j4: motion */
     const puma560_real_t t95 = t83 - t94;
-    const puma560_real_t t96 = t83 + t95;
-    const puma560_real_t t97 = t82 * t82;
+    const puma560_real_t t96 = t83 + t95; /* link j5: motion */
+    const puma560_real_t t97 = t82 * t82; /* link j4: motion */
     const puma560_real_t t98 = t77 * t77;
-    const puma560_real_t t99 = t97 - t98;
+    const puma560_real_t t99 = t97 - t98; /* link j4: columns */
     out[31] = t99 * t35 - (t93 * t84 + t96 * t81);
     const puma560_real_t t100 = t93 * t89 + t96 * t88;
     out[109] = -t100;
     out[187] = PUMA560_C(2.007492603288627) * t100;
     out[265] = PUMA560_C(0.18787994020908783) * t99;
-    const puma560_real_t t101 = t43 - ddq[3];
-    const puma560_real_t t102 = t101 - t86;
-    const puma560_real_t t103 = t78 * t78;
-    const puma560_real_t t104 = t97 - t103;
+    const puma560_real_t t101 = t43 - ddq[3]; /* link j4: motion */
+    const puma560_real_t t102 = t101 - t86; /* link j5: motion */
+    const puma560_real_t t103 = t78 * t78; /* link j4: motion */
+    const puma560_real_t t104 = t97 - t103; /* link j4: columns */
     out[32] = t104 * t84 - (t102 * t81 + t76 * t35);
     const puma560_real_t t105 = t104 * t89 - t102 * t88;
     out[110] = t105;
@@ -228,8 +235,8 @@ int puma560_regressor_standard(
     out[111] = t106;
     out[189] = PUMA560_C(-2.007492603288627) * t106;
     out[267] = -t92;
-    const puma560_real_t t107 = t101 + t86;
-    const puma560_real_t t108 = t98 - t103;
+    const puma560_real_t t107 = t101 + t86; /* link j5: motion */
+    const puma560_real_t t108 = t98 - t103; /* link j4: columns */
     out[34] = t94 * t35 + t107 * t84 + t108 * t81;
     const puma560_real_t t109 = t107 * t89 + t108 * t88;
     out[112] = t109;
@@ -242,30 +249,37 @@ int puma560_regressor_standard(
     out[191] = PUMA560_C(-2.007492603288627) * t111;
     const puma560_real_t t112 = PUMA560_C(-0.18787994020908783) * t101;
     out[269] = t112;
-    const puma560_real_t t113 = t98 + t103;
+    const puma560_real_t t113 = t98 + t103; /* link j5: motion */
+    /* link j4: velocities by those of the joints */
     const puma560_real_t t114 = t61 + (PUMA560_C(0.4318) * t32 + PUMA560_C(-0.0203) * t35);
     const puma560_real_t t115 = t75 * t59 + t74 * t114;
     const puma560_real_t t116 = t74 * t59 - t75 * t114;
+    /* link j4: motion */
     const puma560_real_t t117 = PUMA560_C(0.0203) * t56 + PUMA560_C(-0.4318) * t53 - t71;
     const puma560_real_t t118 = t62 + (PUMA560_C(-0.0203) * t44 + PUMA560_C(-0.4318) * t41);
     const puma560_real_t t119 = t75 * t118 - t74 * t117;
     const puma560_real_t t120 = t68 + (PUMA560_C(0.0203) * t50 - PUMA560_C(0.4318) * t69);
+    /* link j4: columns */
     const puma560_real_t t121 = t113 * t115 - t102 * t116 - t96 * t60 + (t120 * t84 - t119 * t35);
     out[36] = t121;
+    /* link j4: velocities by those of the joints */
     const puma560_real_t t122 = t64 - PUMA560_C(0.017413080780483477);
     const puma560_real_t t123 = t75 * t122;
     const puma560_real_t t124 = t74 * t122;
     const puma560_real_t t125 = t65 - PUMA560_C(0.0008186325610092972);
-    const puma560_real_t t126 = t120 * t89;
+    const puma560_real_t t126 = t120 * t89; /* link j4: columns */
     const puma560_real_t t127 = t102 * t124 - t113 * t123 - t96 * t125 + t126;
     out[114] = t127;
+    /* link j4: velocities by those of the joints */
     const puma560_real_t t128 = PUMA560_C(-0.017413080780483477) * t75;
     const puma560_real_t t129 = PUMA560_C(-0.017413080780483477) * t74;
+    /* link j4: columns */
     const puma560_real_t t130 = t113 * t128 - t102 * t129 + PUMA560_C(-0.0008186325610092972) * t96 - t126;
     out[192] = PUMA560_C(2.007492603288627) * t130;
     out[270] = PUMA560_C(-0.18787994020908783) * t119;
-    const puma560_real_t t131 = t97 + t103;
-    const puma560_real_t t132 = t75 * t117 + t74 * t118;
+    const puma560_real_t t131 = t97 + t103; /* link j5: motion */
+    const puma560_real_t t132 = t75 * t117 + t74 * t118; /* link j4: motion */
+    /* link j4: columns */
     const puma560_real_t t133 = t107 * t115 + t131 * t116 + t93 * t60 - (t120 * t81 + t132 * t35);
     out[37] = -t133;
     const puma560_real_t t134 = t120 * t88;
@@ -290,49 +304,50 @@ int puma560_regressor_standard(
     const puma560_real_t t143 = PUMA560_C(2.007492603288627) * (t132 * t128 - t119 * t129
         + PUMA560_C(-0.0008186325610092972) * t120);
     out[195] = t143;
-    const puma560_real_t t146 = t144 * t107 - t145 * t93;
+    const puma560_real_t t146 = t144 * t107 - t145 * t93; /* link j5: motion */
     const puma560_real_t t147 = t145 * t78 - t144 * t82;
     const puma560_real_t t148 = dq[4] + t77;
     const puma560_real_t t149 = t147 * t148;
     const puma560_real_t t150 = t146 + t149;
-    const puma560_real_t t151 = t145 * t81 + t144 * t35;
-    const puma560_real_t t152 = t145 * t82 + t144 * t78;
+    const puma560_real_t t151 = t145 * t81 + t144 * t35; /* link j5: velocities by those of the joints */
+    const puma560_real_t t152 = t145 * t82 + t144 * t78; /* link j5: motion */
     const puma560_real_t t153 = t152 * t148;
-    const puma560_real_t t154 = t145 * t35 - t144 * t81;
-    const puma560_real_t t155 = t153 * t154;
-    const puma560_real_t t156 = t152 * t147;
-    const puma560_real_t t157 = t150 * t151 + (t155 + t156 * t84);
+    const puma560_real_t t154 = t145 * t35 - t144 * t81; /* link j5: velocities by those of the joints */
+    const puma560_real_t t155 = t153 * t154; /* link j5: columns */
+    const puma560_real_t t156 = t152 * t147; /* link j5: motion */
+    const puma560_real_t t157 = t150 * t151 + (t155 + t156 * t84); /* link j5: columns */
     out[40] = -t157;
-    const puma560_real_t t158 = t145 * t88;
+    const puma560_real_t t158 = t145 * t88; /* link j5: velocities by those of the joints */
     const puma560_real_t t159 = t144 * t88;
-    const puma560_real_t t160 = t153 * t159;
+    const puma560_real_t t160 = t153 * t159; /* link j5: columns */
     const puma560_real_t t161 = t160 - t156 * t89 - t150 * t158;
     out[118] = t161;
     out[196] = PUMA560_C(-2.007492603288627) * t161;
+    /* link j5: velocities by those of the joints */
     const puma560_real_t t162 = PUMA560_C(0.18787994020908783) * t144;
     const puma560_real_t t163 = PUMA560_C(-0.18787994020908783) * t145;
-    const puma560_real_t t164 = t153 * t163;
+    const puma560_real_t t164 = t153 * t163; /* link j5: columns */
     const puma560_real_t t165 = t164 - t150 * t162;
     out[274] = t165;
     const puma560_real_t t166 = PUMA560_C(-0.19862511694053758) * t156;
     out[352] = t166;
-    const puma560_real_t t167 = t149 + t150;
-    const puma560_real_t t168 = t145 * t107 + t144 * t93;
+    const puma560_real_t t167 = t149 + t150; /* link j6: motion */
+    const puma560_real_t t168 = t145 * t107 + t144 * t93; /* link j5: motion */
     const puma560_real_t t169 = t153 - t168;
-    const puma560_real_t t170 = t153 + t169;
-    const puma560_real_t t171 = t152 * t152;
+    const puma560_real_t t170 = t153 + t169; /* link j6: motion */
+    const puma560_real_t t171 = t152 * t152; /* link j5: motion */
     const puma560_real_t t172 = t147 * t147;
-    const puma560_real_t t173 = t171 - t172;
+    const puma560_real_t t173 = t171 - t172; /* link j5: columns */
     out[41] = t170 * t151 - t167 * t154 + t173 * t84;
     const puma560_real_t t174 = t167 * t159 + t170 * t158 + t173 * t89;
     out[119] = t174;
     out[197] = PUMA560_C(-2.007492603288627) * t174;
     out[275] = t167 * t163 + t170 * t162;
     out[353] = PUMA560_C(0.19862511694053758) * t173;
-    const puma560_real_t t175 = ddq[4] + t95;
-    const puma560_real_t t176 = t175 + t156;
-    const puma560_real_t t177 = t148 * t148;
-    const puma560_real_t t178 = t177 - t171;
+    const puma560_real_t t175 = ddq[4] + t95; /* link j5: motion */
+    const puma560_real_t t176 = t175 + t156; /* link j6: motion */
+    const puma560_real_t t177 = t148 * t148; /* link j5: motion */
+    const puma560_real_t t178 = t177 - t171; /* link j5: columns */
     out[42] = t176 * t151 - t146 * t84 + t178 * t154;
     const puma560_real_t t179 = t176 * t158 - t146 * t89 - t178 * t159;
     out[120] = t179;
@@ -345,8 +360,8 @@ int puma560_regressor_standard(
     out[199] = PUMA560_C(-2.007492603288627) * t180;
     out[277] = t92 + t112 - t165;
     out[355] = -t166;
-    const puma560_real_t t181 = t156 - t175;
-    const puma560_real_t t182 = t172 - t177;
+    const puma560_real_t t181 = t156 - t175; /* link j6: motion */
+    const puma560_real_t t182 = t172 - t177; /* link j5: columns */
     out[44] = t182 * t151 - (t168 * t84 + t181 * t154);
     const puma560_real_t t183 = t181 * t159 - t168 * t89 + t182 * t158;
     out[122] = t183;
@@ -362,25 +377,28 @@ int puma560_regressor_standard(
     out[279] = -t186;
     const puma560_real_t t187 = PUMA560_C(0.19862511694053758) * t175;
     out[357] = t187;
-    const puma560_real_t t188 = t145 * t60 - t144 * t115;
-    const puma560_real_t t189 = t172 + t177;
-    const puma560_real_t t190 = t145 * t115 + t144 * t60;
-    const puma560_real_t t191 = t144 * t132 + t145 * t120;
+    const puma560_real_t t188 = t145 * t60 - t144 * t115; /* link j5: velocities by those of the joints */
+    const puma560_real_t t189 = t172 + t177; /* link j6: motion */
+    const puma560_real_t t190 = t145 * t115 + t144 * t60; /* link j5: velocities by those of the joints */
+    const puma560_real_t t191 = t144 * t132 + t145 * t120; /* link j5: motion */
+    /* link j5: columns */
     const puma560_real_t t192 = t189 * t190 - t176 * t188 + t170 * t116 + (t191 * t84 - t119 * t154);
     out[46] = t192;
-    const puma560_real_t t193 = t144 * t123 + t145 * t125;
+    const puma560_real_t t193 = t144 * t123 + t145 * t125; /* link j5: velocities by those of the joints */
     const puma560_real_t t194 = t144 * t125 - t145 * t123;
-    const puma560_real_t t195 = t119 * t159 + t191 * t89;
+    const puma560_real_t t195 = t119 * t159 + t191 * t89; /* link j5: columns */
     const puma560_real_t t196 = t189 * t194 - t176 * t193 - t170 * t124 + t195;
     out[124] = t196;
+    /* link j5: velocities by those of the joints */
     const puma560_real_t t197 = PUMA560_C(0.0008186325610092972) * t145 - t144 * t128;
     const puma560_real_t t198 = t145 * t128 + PUMA560_C(0.0008186325610092972) * t144;
-    const puma560_real_t t199 = t189 * t198 - t176 * t197 + t170 * t129 - t195;
+    const puma560_real_t t199 = t189 * t198 - t176 * t197 + t170 * t129 - t195; /* link j5: columns */
     out[202] = PUMA560_C(2.007492603288627) * t199;
     out[280] = t119 * t163;
     out[358] = PUMA560_C(0.19862511694053758) * t191;
-    const puma560_real_t t200 = t171 + t177;
-    const puma560_real_t t201 = t145 * t132 - t144 * t120;
+    const puma560_real_t t200 = t171 + t177; /* link j6: motion */
+    const puma560_real_t t201 = t145 * t132 - t144 * t120; /* link j5: motion */
+    /* link j5: columns */
     const puma560_real_t t202 = t200 * t188 - t181 * t190 + t167 * t116 + (t119 * t151 + t201 * t84);
     out[47] = t202;
     const puma560_real_t t203 = t119 * t158 + t201 * t89;
@@ -400,43 +418,44 @@ int puma560_regressor_standard(
     out[49] = t141;
     out[127] = t142;
     out[205] = t143;
-    const puma560_real_t t211 = t210 * t167 - t209 * t181;
+    const puma560_real_t t211 = t210 * t167 - t209 * t181; /* link j6: motion */
     const puma560_real_t t212 = t210 * t148 - t209 * t152;
     const puma560_real_t t213 = t147 - dq[5];
     const puma560_real_t t214 = t212 * t213;
     const puma560_real_t t215 = t214 - t211;
-    const puma560_real_t t216 = t210 * t151 - t209 * t84;
-    const puma560_real_t t217 = t210 * t152 + t209 * t148;
+    const puma560_real_t t216 = t210 * t151 - t209 * t84; /* link j6: velocities by those of the joints */
+    const puma560_real_t t217 = t210 * t152 + t209 * t148; /* link j6: motion */
     const puma560_real_t t218 = t217 * t213;
-    const puma560_real_t t219 = t209 * t151 + t210 * t84;
-    const puma560_real_t t220 = t218 * t219;
-    const puma560_real_t t221 = t217 * t212;
-    const puma560_real_t t222 = t215 * t216 - (t220 + t221 * t154);
+    const puma560_real_t t219 = t209 * t151 + t210 * t84; /* link j6: velocities by those of the joints */
+    const puma560_real_t t220 = t218 * t219; /* link j6: columns */
+    const puma560_real_t t221 = t217 * t212; /* link j6: motion */
+    const puma560_real_t t222 = t215 * t216 - (t220 + t221 * t154); /* link j6: columns */
     out[50] = t222;
-    const puma560_real_t t223 = t210 * t158 - t209 * t89;
+    const puma560_real_t t223 = t210 * t158 - t209 * t89; /* link j6: velocities by those of the joints */
     const puma560_real_t t224 = t209 * t158 + t210 * t89;
-    const puma560_real_t t225 = t218 * t224;
+    const puma560_real_t t225 = t218 * t224; /* link j6: columns */
     const puma560_real_t t226 = t215 * t223 + (t221 * t159 - t225);
     out[128] = t226;
     out[206] = PUMA560_C(-2.007492603288627) * t226;
-    const puma560_real_t t227 = t210 * t162;
+    const puma560_real_t t227 = t210 * t162; /* link j6: velocities by those of the joints */
     const puma560_real_t t228 = t209 * t162;
-    const puma560_real_t t229 = t218 * t228;
+    const puma560_real_t t229 = t218 * t228; /* link j6: columns */
     const puma560_real_t t230 = t215 * t227 - (t229 - t221 * t163);
     out[284] = t230;
+    /* link j6: velocities by those of the joints */
     const puma560_real_t t231 = PUMA560_C(-0.19862511694053758) * t209;
     const puma560_real_t t232 = PUMA560_C(0.19862511694053758) * t210;
-    const puma560_real_t t233 = t218 * t232;
+    const puma560_real_t t233 = t218 * t232; /* link j6: columns */
     const puma560_real_t t234 = t215 * t231 - t233;
     out[362] = t234;
     const puma560_real_t t235 = PUMA560_C(-0.1862884266452062) * t221;
     out[440] = t235;
     const puma560_real_t t236 = t214 + t215;
-    const puma560_real_t t237 = t210 * t181 + t209 * t167;
-    const puma560_real_t t238 = t237 - t218 - t218;
-    const puma560_real_t t239 = t217 * t217;
+    const puma560_real_t t237 = t210 * t181 + t209 * t167; /* link j6: motion */
+    const puma560_real_t t238 = t237 - t218 - t218; /* link j6: columns */
+    const puma560_real_t t239 = t217 * t217; /* link j6: motion */
     const puma560_real_t t240 = t212 * t212;
-    const puma560_real_t t241 = t239 - t240;
+    const puma560_real_t t241 = t239 - t240; /* link j6: columns */
     out[51] = t238 * t216 - t236 * t219 + t241 * t154;
     const puma560_real_t t242 = t238 * t223 - t236 * t224 - t241 * t159;
     out[129] = t242;
@@ -444,10 +463,10 @@ int puma560_regressor_standard(
     out[285] = t238 * t227 - t236 * t228 - t241 * t163;
     out[363] = t238 * t231 - t236 * t232;
     out[441] = PUMA560_C(0.1862884266452062) * t241;
-    const puma560_real_t t243 = ddq[5] + t169;
-    const puma560_real_t t244 = t243 + t221;
-    const puma560_real_t t245 = t213 * t213;
-    const puma560_real_t t246 = t239 - t245;
+    const puma560_real_t t243 = ddq[5] + t169; /* link j6: motion */
+    const puma560_real_t t244 = t243 + t221; /* link j6: columns */
+    const puma560_real_t t245 = t213 * t213; /* link j6: motion */
+    const puma560_real_t t246 = t239 - t245; /* link j6: columns */
     out[52] = t244 * t216 - t211 * t154 + t246 * t219;
     const puma560_real_t t247 = t244 * t223 + t211 * t159 + t246 * t224;
     out[130] = t247;
@@ -479,25 +498,27 @@ int puma560_regressor_standard(
     out[367] = t233 + t214 * t231;
     out[445] = PUMA560_C(0.1862884266452062) * t243;
     const puma560_real_t t253 = t240 + t245;
-    const puma560_real_t t254 = t210 * t190 - t209 * t116;
+    const puma560_real_t t254 = t210 * t190 - t209 * t116; /* link j6: velocities by those of the joints */
     const puma560_real_t t255 = t209 * t190 + t210 * t116;
-    const puma560_real_t t256 = t209 * t201 - t210 * t119;
+    const puma560_real_t t256 = t209 * t201 - t210 * t119; /* link j6: motion */
+    /* link j6: columns */
     const puma560_real_t t257 = t253 * t254 + t244 * t255 + t238 * t188 + (t191 * t219 + t256 * t154);
     out[56] = t257;
-    const puma560_real_t t258 = t210 * t194 + t209 * t124;
+    const puma560_real_t t258 = t210 * t194 + t209 * t124; /* link j6: velocities by those of the joints */
     const puma560_real_t t259 = t209 * t194 - t210 * t124;
-    const puma560_real_t t260 = t256 * t159 - t191 * t224;
+    const puma560_real_t t260 = t256 * t159 - t191 * t224; /* link j6: columns */
     const puma560_real_t t261 = t253 * t258 + t244 * t259 + t238 * t193 - t260;
     out[134] = t261;
-    const puma560_real_t t262 = t210 * t198 - t209 * t129;
+    const puma560_real_t t262 = t210 * t198 - t209 * t129; /* link j6: velocities by those of the joints */
     const puma560_real_t t263 = t209 * t198 + t210 * t129;
-    const puma560_real_t t264 = t260 + (t253 * t262 + t244 * t263 + t238 * t197);
+    const puma560_real_t t264 = t260 + (t253 * t262 + t244 * t263 + t238 * t197); /* link j6: columns */
     out[212] = PUMA560_C(2.007492603288627) * t264;
     out[290] = t191 * t228 - t256 * t163;
     out[368] = t191 * t232;
     out[446] = PUMA560_C(0.1862884266452062) * t256;
     const puma560_real_t t265 = t239 + t245;
-    const puma560_real_t t266 = t210 * t201 + t209 * t119;
+    const puma560_real_t t266 = t210 * t201 + t209 * t119; /* link j6: motion */
+    /* link j6: columns */
     const puma560_real_t t267 = t191 * t216 + t266 * t154 - (t249 * t254 + t265 * t255 + t236 * t188);
     out[57] = t267;
     const puma560_real_t t268 = t191 * t223 - t266 * t159;
@@ -517,27 +538,27 @@ int puma560_regressor_standard(
     out[137] = t142;
     out[215] = t143;
     out[60] = PUMA560_C(-272.2221739130435) * dq[0];
-    const puma560_real_t t271 = puma560_sign(dq[0]);
+    const puma560_real_t t271 = puma560_sign(dq[0]); /* joint j1: coulomb_friction */
     out[61] = PUMA560_C(-4.3478260869565215) * t271;
     out[62] = PUMA560_C(-272.2221739130435) * ddq[0];
     out[141] = PUMA560_C(468.7608695652174) * dq[1];
-    const puma560_real_t t272 = puma560_sign(dq[1]);
+    const puma560_real_t t272 = puma560_sign(dq[1]); /* joint j2: coulomb_friction */
     out[142] = PUMA560_C(4.3478260869565215) * t272;
     out[143] = PUMA560_C(468.7608695652174) * ddq[1];
     out[222] = PUMA560_C(-233.50565217391303) * dq[2];
-    const puma560_real_t t273 = puma560_sign(dq[2]);
+    const puma560_real_t t273 = puma560_sign(dq[2]); /* joint j3: coulomb_friction */
     out[223] = PUMA560_C(-4.3478260869565215) * t273;
     out[224] = PUMA560_C(-233.50565217391303) * ddq[2];
     out[303] = PUMA560_C(1086.2342857142855) * dq[3];
-    const puma560_real_t t274 = puma560_sign(dq[3]);
+    const puma560_real_t t274 = puma560_sign(dq[3]); /* joint j4: coulomb_friction */
     out[304] = PUMA560_C(14.285714285714285) * t274;
     out[305] = PUMA560_C(1086.2342857142855) * ddq[3];
     out[384] = PUMA560_C(1027.4714285714285) * dq[4];
-    const puma560_real_t t275 = puma560_sign(dq[4]);
+    const puma560_real_t t275 = puma560_sign(dq[4]); /* joint j5: coulomb_friction */
     out[385] = PUMA560_C(14.285714285714285) * t275;
     out[386] = PUMA560_C(1027.4714285714285) * ddq[4];
     out[465] = PUMA560_C(1095.5142857142857) * dq[5];
-    const puma560_real_t t276 = puma560_sign(dq[5]);
+    const puma560_real_t t276 = puma560_sign(dq[5]); /* joint j6: coulomb_friction */
     out[466] = PUMA560_C(14.285714285714285) * t276;
     out[467] = PUMA560_C(1095.5142857142857) * ddq[5];
     /* always zero */

@@ -6,7 +6,7 @@
  * Arm puma560, description e8eb13fe224405b2.
  * SPDX-License-Identifier: 0BSD
  *
- * Operations: 826 (516 mul, 308 add, 2 neg), 10 trig, 6 other.
+ * Operations: 826 (516 mul, 308 add, 2 neg), 10 trig, 6 other calls (sign, select and the like).
  *
  * @param[in]   q      [6]    [rad]                          joint coordinates; norm at most 10000
  * @param[in]   dq     [6]    [rad/s]                        joint velocities; norm at most 100000
@@ -35,18 +35,18 @@
  */
 #include "puma560_private.h"
 
-#if PUMA560_GENERATION != 0xAC9DC6F4UL
+#if PUMA560_GENERATION != 0x0486C622UL
 #error "puma560.h and puma560_slotine_li_regressor.c are of different generations: generate the arm again"
 #endif
 
-int puma560_slotine_li_regressor(
+puma560_status_t puma560_slotine_li_regressor(
     const puma560_real_t q[PUMA560_N_JOINTS],
     const puma560_real_t dq[PUMA560_N_JOINTS],
     const puma560_real_t dq_r[PUMA560_N_JOINTS],
     const puma560_real_t ddq_r[PUMA560_N_JOINTS],
     puma560_real_t out[PUMA560_N_JOINTS * PUMA560_N_PARAMETERS])
 {
-    int status = PUMA560_STATUS_OK;
+    puma560_status_t status = PUMA560_STATUS_OK;
 
     if (!puma560_within_joints(q, PUMA560_C(1.0e8))
         || !puma560_within_joints(dq, PUMA560_C(1.0e10))
@@ -70,29 +70,31 @@ int puma560_slotine_li_regressor(
     puma560_real_t t188, t189;
     PUMA560_SINCOS(q[5], &t188, &t189);
     out[0] = PUMA560_C(-0.06944177768728742) * ddq_r[0];
-    const puma560_real_t t1 = t0 * dq[0];
+    const puma560_real_t t1 = t0 * dq[0]; /* link j2: motion */
     const puma560_real_t t2 = t0 * dq_r[0];
     const puma560_real_t t3 = PUMA560_C(-0.5) * (t1 * dq_r[1] + dq[1] * t2);
     const puma560_real_t t5 = t4 * ddq_r[0];
     const puma560_real_t t6 = t3 - t5;
+    /* link j2: velocities by those of the joints */
     const puma560_real_t t7 = PUMA560_C(0.06944177768728742) * t4;
-    const puma560_real_t t8 = t4 * dq[0];
+    const puma560_real_t t8 = t4 * dq[0]; /* link j2: motion */
     const puma560_real_t t9 = t4 * dq_r[0];
     const puma560_real_t t10 = PUMA560_C(0.5) * (t8 * dq_r[1] + dq[1] * t9);
+    /* link j2: velocities by those of the joints */
     const puma560_real_t t11 = PUMA560_C(0.06944177768728742) * t0;
-    const puma560_real_t t12 = t11 * t10;
+    const puma560_real_t t12 = t11 * t10; /* link j2: columns */
     out[1] = t7 * t6 - t12;
-    const puma560_real_t t13 = t8 * t2 + t1 * t9;
+    const puma560_real_t t13 = t8 * t2 + t1 * t9; /* link j2: motion */
     out[53] = PUMA560_C(-0.02016336357165757) * t13;
     const puma560_real_t t14 = t0 * ddq_r[0];
-    const puma560_real_t t15 = t10 - (t14 - t10);
+    const puma560_real_t t15 = t10 - (t14 - t10); /* link j3: motion */
     out[2] = t11 * (t3 + t6) + t7 * t15;
-    const puma560_real_t t16 = t8 * t9;
+    const puma560_real_t t16 = t8 * t9; /* link j2: motion */
     const puma560_real_t t17 = t1 * t2;
     out[54] = PUMA560_C(0.04032672714331514) * (t16 - t17);
     const puma560_real_t t18 = PUMA560_C(0.5) * t13;
-    const puma560_real_t t19 = ddq_r[1] + t18;
-    const puma560_real_t t20 = dq[1] * dq_r[1];
+    const puma560_real_t t19 = ddq_r[1] + t18; /* link j3: motion */
+    const puma560_real_t t20 = dq[1] * dq_r[1]; /* link j2: motion */
     out[3] = t7 * t19 + t11 * (t20 - t16);
     out[55] = PUMA560_C(-0.04032672714331514) * t5;
     out[4] = t11 * (ddq_r[1] - t18) + t7 * (t17 - t20);
@@ -101,7 +103,7 @@ int puma560_slotine_li_regressor(
     out[57] = PUMA560_C(0.04032672714331514) * ddq_r[1];
     out[58] = PUMA560_C(-0.39560519327592153) * t0;
     out[59] = PUMA560_C(0.39560519327592153) * t4;
-    const puma560_real_t t23 = t0 * t22 - t4 * t21;
+    const puma560_real_t t23 = t0 * t22 - t4 * t21; /* link j3: motion */
     const puma560_real_t t24 = dq[0] * t23;
     const puma560_real_t t25 = dq_r[1] + dq_r[2];
     const puma560_real_t t26 = t23 * dq_r[0];
@@ -110,109 +112,114 @@ int puma560_slotine_li_regressor(
     const puma560_real_t t29 = t4 * t22 + t0 * t21;
     const puma560_real_t t30 = t29 * ddq_r[0];
     const puma560_real_t t31 = t30 + t28;
-    const puma560_real_t t32 = t22 * t7 + t21 * t11;
-    const puma560_real_t t33 = dq[0] * t29;
+    const puma560_real_t t32 = t22 * t7 + t21 * t11; /* link j3: velocities by those of the joints */
+    const puma560_real_t t33 = dq[0] * t29; /* link j3: motion */
     const puma560_real_t t34 = t29 * dq_r[0];
     const puma560_real_t t35 = PUMA560_C(0.5) * (t33 * t25 + t27 * t34);
-    const puma560_real_t t36 = t22 * t11 - t21 * t7;
-    const puma560_real_t t37 = t36 * t35;
+    const puma560_real_t t36 = t22 * t11 - t21 * t7; /* link j3: velocities by those of the joints */
+    const puma560_real_t t37 = t36 * t35; /* link j3: columns */
     out[8] = -(t32 * t31 + t37);
-    const puma560_real_t t38 = t33 * t26 + t24 * t34;
+    const puma560_real_t t38 = t33 * t26 + t24 * t34; /* link j3: motion */
     out[60] = PUMA560_C(-0.02016336357165757) * t38;
     out[112] = PUMA560_C(0.040477803227521925) * t38;
-    const puma560_real_t t39 = t28 + t31;
-    const puma560_real_t t40 = t23 * ddq_r[0];
+    const puma560_real_t t39 = t28 + t31; /* link j4: motion */
+    const puma560_real_t t40 = t23 * ddq_r[0]; /* link j3: motion */
     const puma560_real_t t41 = t35 - t40;
-    const puma560_real_t t42 = t35 + t41;
+    const puma560_real_t t42 = t35 + t41; /* link j4: motion */
     out[9] = t32 * t42 - t36 * t39;
-    const puma560_real_t t43 = t33 * t34;
+    const puma560_real_t t43 = t33 * t34; /* link j3: motion */
     const puma560_real_t t44 = t24 * t26;
-    const puma560_real_t t45 = t43 - t44;
+    const puma560_real_t t45 = t43 - t44; /* link j3: columns */
     out[61] = PUMA560_C(0.04032672714331514) * t45;
     out[113] = PUMA560_C(-0.08095560645504385) * t45;
-    const puma560_real_t t46 = PUMA560_C(0.5) * t38;
+    const puma560_real_t t46 = PUMA560_C(0.5) * t38; /* link j3: motion */
     const puma560_real_t t47 = ddq_r[1] + ddq_r[2];
-    const puma560_real_t t48 = t47 + t46;
-    const puma560_real_t t49 = t27 * t25;
+    const puma560_real_t t48 = t47 + t46; /* link j4: motion */
+    const puma560_real_t t49 = t27 * t25; /* link j3: motion */
     out[10] = t32 * t48 - t36 * (t43 - t49);
     out[62] = PUMA560_C(-0.04032672714331514) * t30;
     out[114] = PUMA560_C(0.08095560645504385) * t30;
-    const puma560_real_t t50 = t46 - t47;
+    const puma560_real_t t50 = t46 - t47; /* link j4: motion */
     out[11] = t32 * (t44 - t49) - t36 * t50;
     out[63] = PUMA560_C(-0.04032672714331514) * t40;
     out[115] = PUMA560_C(0.08095560645504385) * t40;
     out[12] = t37 - t32 * t28;
     out[64] = PUMA560_C(0.04032672714331514) * t47;
     out[116] = PUMA560_C(-0.08095560645504385) * t47;
+    /* link j3: velocities by those of the joints */
     const puma560_real_t t51 = PUMA560_C(0.008707998921985843) * t0;
     const puma560_real_t t52 = PUMA560_C(0.008707998921985843) * t4;
     const puma560_real_t t53 = t21 * t51 + t22 * t52;
-    const puma560_real_t t54 = t44 + t49;
-    const puma560_real_t t55 = t21 * t52 - t22 * t51;
+    const puma560_real_t t54 = t44 + t49; /* link j4: motion */
+    const puma560_real_t t55 = t21 * t52 - t22 * t51; /* link j3: velocities by those of the joints */
     const puma560_real_t t56 = PUMA560_C(-0.029984959605370707) * t0;
+    /* link j3: motion */
     const puma560_real_t t57 = PUMA560_C(-0.4318) * t15 + PUMA560_C(-0.1254) * (t16 + t17);
-    const puma560_real_t t58 = t55 * t54 - t53 * t48 - t56 * t42 - t36 * t57;
+    const puma560_real_t t58 = t55 * t54 - t53 * t48 - t56 * t42 - t36 * t57; /* link j3: columns */
     out[13] = t58;
+    /* link j3: velocities by those of the joints */
     const puma560_real_t t59 = PUMA560_C(-0.017413080780483477) * t22;
     const puma560_real_t t60 = PUMA560_C(-0.017413080780483477) * t21;
+    /* link j3: motion */
     const puma560_real_t t61 = PUMA560_C(-9.81) * t0 + (PUMA560_C(0.4318) * t19 + PUMA560_C(0.1254) * t5);
     const puma560_real_t t62 = PUMA560_C(9.81) * t4 + (PUMA560_C(0.4318) * (t17 + t20)
         + PUMA560_C(0.1254) * t14);
     const puma560_real_t t63 = t21 * t62 + t22 * t61;
     out[65] = t60 * t54 - t59 * t48 + PUMA560_C(0.04032672714331514) * t63;
     out[117] = PUMA560_C(-0.08095560645504385) * t63;
-    const puma560_real_t t64 = t43 + t49;
-    const puma560_real_t t65 = t53 * t64 - t55 * t50 - t56 * t39 + t32 * t57;
+    const puma560_real_t t64 = t43 + t49; /* link j4: motion */
+    const puma560_real_t t65 = t53 * t64 - t55 * t50 - t56 * t39 + t32 * t57; /* link j3: columns */
     out[14] = t65;
-    const puma560_real_t t66 = t22 * t62 - t21 * t61;
+    const puma560_real_t t66 = t22 * t62 - t21 * t61; /* link j3: motion */
     out[66] = t59 * t64 - t60 * t50 + PUMA560_C(0.04032672714331514) * t66;
     out[118] = PUMA560_C(-0.08095560645504385) * t66;
-    const puma560_real_t t69 = t68 * t39 - t67 * t50;
+    const puma560_real_t t69 = t68 * t39 - t67 * t50; /* link j4: motion */
     const puma560_real_t t70 = t68 * t27 - t67 * t33;
     const puma560_real_t t71 = dq_r[3] - t26;
     const puma560_real_t t72 = t24 - dq[3];
     const puma560_real_t t73 = t68 * t25 - t67 * t34;
     const puma560_real_t t74 = PUMA560_C(0.5) * (t70 * t71 - t72 * t73);
     const puma560_real_t t75 = t69 + t74;
-    const puma560_real_t t76 = t68 * t32;
-    const puma560_real_t t77 = t67 * t27 + t68 * t33;
+    const puma560_real_t t76 = t68 * t32; /* link j4: velocities by those of the joints */
+    const puma560_real_t t77 = t67 * t27 + t68 * t33; /* link j4: motion */
     const puma560_real_t t78 = t68 * t34 + t67 * t25;
     const puma560_real_t t79 = PUMA560_C(0.5) * (t77 * t71 - t72 * t78);
-    const puma560_real_t t80 = t67 * t32;
-    const puma560_real_t t81 = t80 * t79;
-    const puma560_real_t t82 = t77 * t73 + t70 * t78;
+    const puma560_real_t t80 = t67 * t32; /* link j4: velocities by those of the joints */
+    const puma560_real_t t81 = t80 * t79; /* link j4: columns */
+    const puma560_real_t t82 = t77 * t73 + t70 * t78; /* link j4: motion */
     const puma560_real_t t83 = PUMA560_C(0.5) * t82;
     out[15] = t81 - t36 * t83 - t76 * t75;
+    /* link j4: velocities by those of the joints */
     const puma560_real_t t84 = PUMA560_C(0.04032672714331514) * t67;
     const puma560_real_t t85 = PUMA560_C(0.04032672714331514) * t68;
-    const puma560_real_t t86 = t85 * t79;
+    const puma560_real_t t86 = t85 * t79; /* link j4: columns */
     const puma560_real_t t87 = t84 * t75 + t86;
     out[67] = t87;
     out[119] = PUMA560_C(-2.007492603288627) * t87;
     out[171] = PUMA560_C(-0.09393997010454391) * t82;
-    const puma560_real_t t88 = t74 + t75;
-    const puma560_real_t t89 = t68 * t50 + t67 * t39;
+    const puma560_real_t t88 = t74 + t75; /* link j5: motion */
+    const puma560_real_t t89 = t68 * t50 + t67 * t39; /* link j4: motion */
     const puma560_real_t t90 = t89 + t79;
-    const puma560_real_t t91 = t79 + t90;
-    const puma560_real_t t92 = t77 * t78;
+    const puma560_real_t t91 = t79 + t90; /* link j5: motion */
+    const puma560_real_t t92 = t77 * t78; /* link j4: motion */
     const puma560_real_t t93 = t70 * t73;
-    const puma560_real_t t94 = t92 - t93;
+    const puma560_real_t t94 = t92 - t93; /* link j4: columns */
     out[16] = t80 * t88 + t76 * t91 + t36 * t94;
     const puma560_real_t t95 = t85 * t88 - t84 * t91;
     out[68] = t95;
     out[120] = PUMA560_C(-2.007492603288627) * t95;
     out[172] = PUMA560_C(0.18787994020908783) * t94;
-    const puma560_real_t t96 = ddq_r[3] + t41;
-    const puma560_real_t t97 = t96 + t83;
-    const puma560_real_t t98 = t72 * t71;
-    const puma560_real_t t99 = t92 + t98;
+    const puma560_real_t t96 = ddq_r[3] + t41; /* link j4: motion */
+    const puma560_real_t t97 = t96 + t83; /* link j5: motion */
+    const puma560_real_t t98 = t72 * t71; /* link j4: motion */
+    const puma560_real_t t99 = t92 + t98; /* link j4: columns */
     out[17] = t76 * t97 - t36 * t69 + t80 * t99;
     const puma560_real_t t100 = t85 * t99 - t84 * t97;
     out[69] = t100;
     out[121] = PUMA560_C(-2.007492603288627) * t100;
     out[173] = PUMA560_C(-0.18787994020908783) * t69;
-    const puma560_real_t t101 = t83 - t96;
-    const puma560_real_t t102 = t93 + t98;
+    const puma560_real_t t101 = t83 - t96; /* link j5: motion */
+    const puma560_real_t t102 = t93 + t98; /* link j4: columns */
     out[18] = t36 * t89 + t80 * t101 + t76 * t102;
     const puma560_real_t t103 = t85 * t101 - t84 * t102;
     out[70] = t103;
@@ -223,30 +230,37 @@ int puma560_slotine_li_regressor(
     out[71] = t104;
     out[123] = PUMA560_C(-2.007492603288627) * t104;
     out[175] = PUMA560_C(0.18787994020908783) * t96;
-    const puma560_real_t t105 = t98 - t93;
+    const puma560_real_t t105 = t98 - t93; /* link j5: motion */
+    /* link j4: velocities by those of the joints */
     const puma560_real_t t106 = t56 + (PUMA560_C(0.4318) * t32 + PUMA560_C(-0.0203) * t36);
     const puma560_real_t t107 = t68 * t55 + t67 * t106;
     const puma560_real_t t108 = t68 * t106 - t67 * t55;
+    /* link j4: motion */
     const puma560_real_t t109 = t57 + (PUMA560_C(-0.0203) * t42 + PUMA560_C(-0.4318) * t39);
     const puma560_real_t t110 = t66 + (PUMA560_C(0.0203) * t54 + PUMA560_C(-0.4318) * t50);
     const puma560_real_t t111 = t68 * t109 - t67 * t110;
     const puma560_real_t t112 = t63 + (PUMA560_C(0.0203) * t48 + PUMA560_C(-0.4318) * t64);
+    /* link j4: columns */
     const puma560_real_t t113 = t53 * t91 - (t107 * t105 + t108 * t97) + (t80 * t112 - t36 * t111);
     out[20] = t113;
+    /* link j4: velocities by those of the joints */
     const puma560_real_t t114 = t60 + PUMA560_C(0.017413080780483477);
     const puma560_real_t t115 = t68 * t114;
     const puma560_real_t t116 = t67 * t114;
     const puma560_real_t t117 = t59 - PUMA560_C(0.0008186325610092972);
-    const puma560_real_t t118 = t85 * t112;
+    const puma560_real_t t118 = t85 * t112; /* link j4: columns */
     const puma560_real_t t119 = t116 * t97 - t115 * t105 + t117 * t91 + t118;
     out[72] = t119;
+    /* link j4: velocities by those of the joints */
     const puma560_real_t t120 = PUMA560_C(-0.017413080780483477) * t68;
     const puma560_real_t t121 = PUMA560_C(0.017413080780483477) * t67;
+    /* link j4: columns */
     const puma560_real_t t122 = PUMA560_C(0.0008186325610092972) * t91 - (t120 * t105 + t121 * t97) - t118;
     out[124] = PUMA560_C(2.007492603288627) * t122;
     out[176] = PUMA560_C(-0.18787994020908783) * t111;
-    const puma560_real_t t123 = t92 - t98;
-    const puma560_real_t t124 = t68 * t110 + t67 * t109;
+    const puma560_real_t t123 = t92 - t98; /* link j5: motion */
+    const puma560_real_t t124 = t68 * t110 + t67 * t109; /* link j4: motion */
+    /* link j4: columns */
     const puma560_real_t t125 = t108 * t123 - t107 * t101 + t53 * t88 + (t76 * t112 + t36 * t124);
     out[21] = t125;
     const puma560_real_t t126 = t84 * t112;
@@ -255,58 +269,59 @@ int puma560_slotine_li_regressor(
     const puma560_real_t t128 = t126 + (t121 * t123 - t120 * t101 + PUMA560_C(0.0008186325610092972) * t88);
     out[125] = PUMA560_C(2.007492603288627) * t128;
     out[177] = PUMA560_C(0.18787994020908783) * t124;
-    const puma560_real_t t131 = t130 * t101 + t129 * t88;
+    const puma560_real_t t131 = t130 * t101 + t129 * t88; /* link j5: motion */
     const puma560_real_t t132 = t130 * t77 - t129 * t72;
     const puma560_real_t t133 = dq_r[4] + t73;
     const puma560_real_t t134 = t130 * t78 + t129 * t71;
     const puma560_real_t t135 = dq[4] + t70;
     const puma560_real_t t136 = PUMA560_C(0.5) * (t132 * t133 + t135 * t134);
     const puma560_real_t t137 = t136 - t131;
-    const puma560_real_t t138 = t129 * t76 + t130 * t36;
-    const puma560_real_t t139 = t129 * t77 + t130 * t72;
+    const puma560_real_t t138 = t129 * t76 + t130 * t36; /* link j5: velocities by those of the joints */
+    const puma560_real_t t139 = t129 * t77 + t130 * t72; /* link j5: motion */
     const puma560_real_t t140 = t129 * t78 - t130 * t71;
     const puma560_real_t t141 = t139 * t134 + t132 * t140;
     const puma560_real_t t142 = PUMA560_C(0.5) * t141;
     const puma560_real_t t143 = PUMA560_C(-0.5) * (t139 * t133 + t135 * t140);
-    const puma560_real_t t144 = t130 * t76 - t129 * t36;
-    const puma560_real_t t145 = t144 * t143;
+    const puma560_real_t t144 = t130 * t76 - t129 * t36; /* link j5: velocities by those of the joints */
+    const puma560_real_t t145 = t144 * t143; /* link j5: columns */
     out[22] = t138 * t137 + (t80 * t142 - t145);
-    const puma560_real_t t146 = t129 * t84;
+    const puma560_real_t t146 = t129 * t84; /* link j5: velocities by those of the joints */
     const puma560_real_t t147 = t130 * t84;
-    const puma560_real_t t148 = t147 * t143;
+    const puma560_real_t t148 = t147 * t143; /* link j5: columns */
     const puma560_real_t t149 = t148 + t85 * t142 - t146 * t137;
     out[74] = t149;
     out[126] = PUMA560_C(-2.007492603288627) * t149;
+    /* link j5: velocities by those of the joints */
     const puma560_real_t t150 = PUMA560_C(0.18787994020908783) * t130;
     const puma560_real_t t151 = PUMA560_C(-0.18787994020908783) * t129;
-    const puma560_real_t t152 = t151 * t143;
+    const puma560_real_t t152 = t151 * t143; /* link j5: columns */
     out[178] = t150 * t137 - t152;
     out[230] = PUMA560_C(0.09931255847026879) * t141;
-    const puma560_real_t t153 = t136 + t137;
-    const puma560_real_t t154 = t130 * t88 - t129 * t101;
+    const puma560_real_t t153 = t136 + t137; /* link j6: motion */
+    const puma560_real_t t154 = t130 * t88 - t129 * t101; /* link j5: motion */
     const puma560_real_t t155 = t143 - t154;
-    const puma560_real_t t156 = t143 + t155;
-    const puma560_real_t t157 = t139 * t140;
+    const puma560_real_t t156 = t143 + t155; /* link j6: motion */
+    const puma560_real_t t157 = t139 * t140; /* link j5: motion */
     const puma560_real_t t158 = t132 * t134;
-    const puma560_real_t t159 = t157 - t158;
+    const puma560_real_t t159 = t157 - t158; /* link j5: columns */
     out[23] = t80 * t159 - (t144 * t153 + t138 * t156);
     const puma560_real_t t160 = t147 * t153 + t146 * t156 + t85 * t159;
     out[75] = t160;
     out[127] = PUMA560_C(-2.007492603288627) * t160;
     out[179] = -(t151 * t153 + t150 * t156);
     out[231] = PUMA560_C(0.19862511694053758) * t159;
-    const puma560_real_t t161 = ddq_r[4] - t90;
-    const puma560_real_t t162 = t161 - t142;
-    const puma560_real_t t163 = t135 * t133;
-    const puma560_real_t t164 = t163 - t157;
+    const puma560_real_t t161 = ddq_r[4] - t90; /* link j5: motion */
+    const puma560_real_t t162 = t161 - t142; /* link j6: motion */
+    const puma560_real_t t163 = t135 * t133; /* link j5: motion */
+    const puma560_real_t t164 = t163 - t157; /* link j5: columns */
     out[24] = t138 * t162 - t80 * t131 - t144 * t164;
     const puma560_real_t t165 = t147 * t164 - (t146 * t162 + t85 * t131);
     out[76] = t165;
     out[128] = PUMA560_C(-2.007492603288627) * t165;
     out[180] = t150 * t162 - t151 * t164;
     out[232] = PUMA560_C(-0.19862511694053758) * t131;
-    const puma560_real_t t166 = t161 + t142;
-    const puma560_real_t t167 = t158 - t163;
+    const puma560_real_t t166 = t161 + t142; /* link j6: motion */
+    const puma560_real_t t167 = t158 - t163; /* link j5: columns */
     out[25] = t80 * t154 - t144 * t166 + t138 * t167;
     const puma560_real_t t168 = t85 * t154 + t147 * t166 - t146 * t167;
     out[77] = t168;
@@ -319,25 +334,28 @@ int puma560_slotine_li_regressor(
     out[130] = PUMA560_C(-2.007492603288627) * t169;
     out[182] = t152 + t150 * t136;
     out[234] = PUMA560_C(0.19862511694053758) * t161;
-    const puma560_real_t t170 = t129 * t53 - t130 * t107;
-    const puma560_real_t t171 = t158 + t163;
-    const puma560_real_t t172 = t129 * t107 + t130 * t53;
-    const puma560_real_t t173 = t130 * t124 + t129 * t112;
+    const puma560_real_t t170 = t129 * t53 - t130 * t107; /* link j5: velocities by those of the joints */
+    const puma560_real_t t171 = t158 + t163; /* link j6: motion */
+    const puma560_real_t t172 = t129 * t107 + t130 * t53; /* link j5: velocities by those of the joints */
+    const puma560_real_t t173 = t130 * t124 + t129 * t112; /* link j5: motion */
+    /* link j5: columns */
     const puma560_real_t t174 = t172 * t171 - t170 * t162 + t108 * t156 + (t144 * t111 + t80 * t173);
     out[27] = t174;
-    const puma560_real_t t175 = t130 * t115 - t129 * t117;
+    const puma560_real_t t175 = t130 * t115 - t129 * t117; /* link j5: velocities by those of the joints */
     const puma560_real_t t176 = t129 * t115 + t130 * t117;
-    const puma560_real_t t177 = t85 * t173 - t147 * t111;
+    const puma560_real_t t177 = t85 * t173 - t147 * t111; /* link j5: columns */
     const puma560_real_t t178 = t176 * t171 + t175 * t162 - t116 * t156 + t177;
     out[79] = t178;
+    /* link j5: velocities by those of the joints */
     const puma560_real_t t179 = PUMA560_C(0.0008186325610092972) * t129 - t130 * t120;
     const puma560_real_t t180 = t129 * t120 + PUMA560_C(0.0008186325610092972) * t130;
-    const puma560_real_t t181 = t180 * t171 - t179 * t162 + t121 * t156 - t177;
+    const puma560_real_t t181 = t180 * t171 - t179 * t162 + t121 * t156 - t177; /* link j5: columns */
     out[131] = PUMA560_C(2.007492603288627) * t181;
     out[183] = t151 * t111;
     out[235] = PUMA560_C(0.19862511694053758) * t173;
-    const puma560_real_t t182 = t157 + t163;
-    const puma560_real_t t183 = t129 * t124 - t130 * t112;
+    const puma560_real_t t182 = t157 + t163; /* link j6: motion */
+    const puma560_real_t t183 = t129 * t124 - t130 * t112; /* link j5: motion */
+    /* link j5: columns */
     const puma560_real_t t184 = t172 * t166 + t170 * t182 + t108 * t153 + (t138 * t111 + t80 * t183);
     out[28] = t184;
     const puma560_real_t t185 = t85 * t183 - t146 * t111;
@@ -347,43 +365,44 @@ int puma560_slotine_li_regressor(
     out[132] = PUMA560_C(2.007492603288627) * t187;
     out[184] = t150 * t111;
     out[236] = PUMA560_C(0.19862511694053758) * t183;
-    const puma560_real_t t190 = t188 * t166 - t189 * t153;
+    const puma560_real_t t190 = t188 * t166 - t189 * t153; /* link j6: motion */
     const puma560_real_t t191 = t189 * t135 - t188 * t139;
     const puma560_real_t t192 = dq_r[5] + t134;
     const puma560_real_t t193 = dq[5] + t132;
     const puma560_real_t t194 = t189 * t133 - t188 * t140;
     const puma560_real_t t195 = PUMA560_C(-0.5) * (t191 * t192 + t193 * t194);
     const puma560_real_t t196 = t190 - t195;
-    const puma560_real_t t197 = t189 * t138 - t188 * t80;
-    const puma560_real_t t198 = t189 * t139 + t188 * t135;
+    const puma560_real_t t197 = t189 * t138 - t188 * t80; /* link j6: velocities by those of the joints */
+    const puma560_real_t t198 = t189 * t139 + t188 * t135; /* link j6: motion */
     const puma560_real_t t199 = t189 * t140 + t188 * t133;
     const puma560_real_t t200 = PUMA560_C(0.5) * (t198 * t192 + t193 * t199);
-    const puma560_real_t t201 = t188 * t138 + t189 * t80;
-    const puma560_real_t t202 = t201 * t200;
-    const puma560_real_t t203 = t198 * t194 + t191 * t199;
+    const puma560_real_t t201 = t188 * t138 + t189 * t80; /* link j6: velocities by those of the joints */
+    const puma560_real_t t202 = t201 * t200; /* link j6: columns */
+    const puma560_real_t t203 = t198 * t194 + t191 * t199; /* link j6: motion */
     const puma560_real_t t204 = PUMA560_C(-0.5) * t203;
     out[29] = t202 - t144 * t204 - t197 * t196;
-    const puma560_real_t t205 = t189 * t146 + t188 * t85;
+    const puma560_real_t t205 = t189 * t146 + t188 * t85; /* link j6: velocities by those of the joints */
     const puma560_real_t t206 = t188 * t146 - t189 * t85;
-    const puma560_real_t t207 = t206 * t200;
+    const puma560_real_t t207 = t206 * t200; /* link j6: columns */
     const puma560_real_t t208 = t205 * t196 + (t147 * t204 - t207);
     out[81] = t208;
     out[133] = PUMA560_C(-2.007492603288627) * t208;
-    const puma560_real_t t209 = t189 * t150;
+    const puma560_real_t t209 = t189 * t150; /* link j6: velocities by those of the joints */
     const puma560_real_t t210 = t188 * t150;
-    const puma560_real_t t211 = t210 * t200;
+    const puma560_real_t t211 = t210 * t200; /* link j6: columns */
     out[185] = t211 - t151 * t204 - t209 * t196;
+    /* link j6: velocities by those of the joints */
     const puma560_real_t t212 = PUMA560_C(-0.19862511694053758) * t188;
     const puma560_real_t t213 = PUMA560_C(0.19862511694053758) * t189;
-    const puma560_real_t t214 = t213 * t200;
+    const puma560_real_t t214 = t213 * t200; /* link j6: columns */
     out[237] = t214 - t212 * t196;
     out[289] = PUMA560_C(-0.0931442133226031) * t203;
     const puma560_real_t t215 = t196 - t195;
-    const puma560_real_t t216 = t189 * t166 + t188 * t153;
-    const puma560_real_t t217 = t200 + (t200 - t216);
-    const puma560_real_t t218 = t198 * t199;
+    const puma560_real_t t216 = t189 * t166 + t188 * t153; /* link j6: motion */
+    const puma560_real_t t217 = t200 + (t200 - t216); /* link j6: columns */
+    const puma560_real_t t218 = t198 * t199; /* link j6: motion */
     const puma560_real_t t219 = t191 * t194;
-    const puma560_real_t t220 = t218 - t219;
+    const puma560_real_t t220 = t218 - t219; /* link j6: columns */
     out[30] = t201 * t215 + t197 * t217 - t144 * t220;
     const puma560_real_t t221 = t147 * t220 - (t206 * t215 + t205 * t217);
     out[82] = t221;
@@ -391,10 +410,10 @@ int puma560_slotine_li_regressor(
     out[186] = t210 * t215 + t209 * t217 - t151 * t220;
     out[238] = t213 * t215 + t212 * t217;
     out[290] = PUMA560_C(0.1862884266452062) * t220;
-    const puma560_real_t t222 = t155 - ddq_r[5];
-    const puma560_real_t t223 = t222 + t204;
-    const puma560_real_t t224 = t193 * t192;
-    const puma560_real_t t225 = t218 - t224;
+    const puma560_real_t t222 = t155 - ddq_r[5]; /* link j6: motion */
+    const puma560_real_t t223 = t222 + t204; /* link j6: columns */
+    const puma560_real_t t224 = t193 * t192; /* link j6: motion */
+    const puma560_real_t t225 = t218 - t224; /* link j6: columns */
     out[31] = t201 * t225 - (t197 * t223 - t144 * t190);
     const puma560_real_t t226 = t205 * t223 - t147 * t190 - t206 * t225;
     out[83] = t226;
@@ -421,7 +440,8 @@ int puma560_slotine_li_regressor(
     const puma560_real_t t231 = t219 + t224;
     const puma560_real_t t232 = t188 * t223 - t189 * t231;
     const puma560_real_t t233 = t188 * t231 + t189 * t223;
-    const puma560_real_t t234 = t188 * t183 - t189 * t111;
+    const puma560_real_t t234 = t188 * t183 - t189 * t111; /* link j6: motion */
+    /* link j6: columns */
     const puma560_real_t t235 = t170 * t217 - t172 * t232 + t108 * t233 + (t201 * t173 - t144 * t234);
     out[34] = t235;
     const puma560_real_t t236 = t147 * t234 - t206 * t173;
@@ -435,7 +455,8 @@ int puma560_slotine_li_regressor(
     const puma560_real_t t239 = t218 + t224;
     const puma560_real_t t240 = t189 * t227 + t188 * t239;
     const puma560_real_t t241 = t189 * t239 - t188 * t227;
-    const puma560_real_t t242 = t189 * t183 + t188 * t111;
+    const puma560_real_t t242 = t189 * t183 + t188 * t111; /* link j6: motion */
+    /* link j6: columns */
     const puma560_real_t t243 = t170 * t215 - t172 * t240 + t108 * t241 + (t197 * t173 - t144 * t242);
     out[35] = t243;
     const puma560_real_t t244 = t147 * t242 - t205 * t173;
@@ -447,25 +468,25 @@ int puma560_slotine_li_regressor(
     out[243] = t212 * t173;
     out[295] = PUMA560_C(0.1862884266452062) * t242;
     out[36] = PUMA560_C(-272.2221739130435) * dq[0];
-    const puma560_real_t t247 = puma560_sign(dq[0]);
+    const puma560_real_t t247 = puma560_sign(dq[0]); /* joint j1: coulomb_friction */
     out[37] = PUMA560_C(-4.3478260869565215) * t247;
     out[90] = PUMA560_C(468.7608695652174) * dq[1];
-    const puma560_real_t t248 = puma560_sign(dq[1]);
+    const puma560_real_t t248 = puma560_sign(dq[1]); /* joint j2: coulomb_friction */
     out[91] = PUMA560_C(4.3478260869565215) * t248;
     out[144] = PUMA560_C(-233.50565217391303) * dq[2];
-    const puma560_real_t t249 = puma560_sign(dq[2]);
+    const puma560_real_t t249 = puma560_sign(dq[2]); /* joint j3: coulomb_friction */
     out[145] = PUMA560_C(-4.3478260869565215) * t249;
     out[146] = PUMA560_C(-233.50565217391303) * ddq_r[2];
     out[199] = PUMA560_C(1086.2342857142855) * dq[3];
-    const puma560_real_t t250 = puma560_sign(dq[3]);
+    const puma560_real_t t250 = puma560_sign(dq[3]); /* joint j4: coulomb_friction */
     out[200] = PUMA560_C(14.285714285714285) * t250;
     out[201] = PUMA560_C(1086.2342857142855) * ddq_r[3];
     out[254] = PUMA560_C(1027.4714285714285) * dq[4];
-    const puma560_real_t t251 = puma560_sign(dq[4]);
+    const puma560_real_t t251 = puma560_sign(dq[4]); /* joint j5: coulomb_friction */
     out[255] = PUMA560_C(14.285714285714285) * t251;
     out[256] = PUMA560_C(1027.4714285714285) * ddq_r[4];
     out[309] = PUMA560_C(1095.5142857142857) * dq[5];
-    const puma560_real_t t252 = puma560_sign(dq[5]);
+    const puma560_real_t t252 = puma560_sign(dq[5]); /* joint j6: coulomb_friction */
     out[310] = PUMA560_C(14.285714285714285) * t252;
     out[311] = PUMA560_C(1095.5142857142857) * ddq_r[5];
     /* always zero */

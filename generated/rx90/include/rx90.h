@@ -12,7 +12,8 @@
  *
  * Every function returns RX90_STATUS_OK, or the sum of the RX90_STATUS_ bits that apply; all of
  * its outputs are then zero. Inputs are checked by their Euclidean norm, so one that is not finite is
- * found too (not with -ffast-math). Outputs may not overlap inputs. Matrices are row-major.
+ * found too (not with -ffast-math). Outputs may not overlap inputs. Matrices are row-major. In the sources a
+ * remark behind a value says which link or joint it belongs to, and those after it up to the next remark.
  *
  * Coordinates:
  *
@@ -82,7 +83,7 @@
 #define RX90_H
 
 /** Number of this generation: header and sources of different ones do not compile together. */
-#define RX90_GENERATION 0xD1F0D18FUL
+#define RX90_GENERATION 0x88006983UL
 
 /** SHA-256 of the description that this is the model of, then after a blank the description's version, if any. */
 #define RX90_MODEL "10f0505273a073e2836fd5196308da2ff0e26815099ce8f081f39fd9e627e546"
@@ -115,6 +116,7 @@
 #define rx90_mass_matrix rx90_mass_matrix_float
 #define rx90_forward_dynamics rx90_forward_dynamics_float
 #define rx90_energy rx90_energy_float
+#define rx90_joint_effort rx90_joint_effort_float
 #define rx90_regressor rx90_regressor_float
 #define rx90_regressor_standard rx90_regressor_standard_float
 #define rx90_regressor_packed rx90_regressor_packed_float
@@ -125,6 +127,7 @@
 #define rx90_mass_matrix_standard rx90_mass_matrix_standard_float
 #define rx90_forward_dynamics_standard rx90_forward_dynamics_standard_float
 #define rx90_energy_standard rx90_energy_standard_float
+#define rx90_joint_effort_standard rx90_joint_effort_standard_float
 #define rx90_forward_kinematics rx90_forward_kinematics_float
 #define rx90_jacobian rx90_jacobian_float
 #define rx90_motor_from_joint rx90_motor_from_joint_float
@@ -134,6 +137,8 @@
 #define rx90_forward_dynamics_derivatives rx90_forward_dynamics_derivatives_float
 #define rx90_inverse_dynamics_derivatives_standard rx90_inverse_dynamics_derivatives_standard_float
 #define rx90_forward_dynamics_derivatives_standard rx90_forward_dynamics_derivatives_standard_float
+#define rx90_momentum_observer_step rx90_momentum_observer_step_float
+#define rx90_momentum_observer_step_standard rx90_momentum_observer_step_standard_float
 #define rx90_check_parameters rx90_check_parameters_float
 #define rx90_check_parameters_standard rx90_check_parameters_standard_float
 #define rx90_model rx90_model_float
@@ -153,11 +158,15 @@ typedef RX90_REAL rx90_real_t;
 #define RX90_N_PARAMETERS           52   /**< base parameters */
 #define RX90_N_STANDARD_PARAMETERS  78   /**< standard parameters */
 #define RX90_N_PACKED               155  /**< structural non-zeros of the regressor */
+#define RX90_N_OBSERVER_STATES      6    /**< state of the observer: the momentum that the model expects */
 
-#define RX90_STATUS_OK     0
-#define RX90_STATUS_STROKE 1 /**< a lever would leave its stroke */
-#define RX90_STATUS_PIVOT  2 /**< a pivot of the mass matrix vanishes, or the result is beyond 1e15 */
-#define RX90_STATUS_INPUT  4 /**< an input is not finite or beyond its bound */
+/** RX90_STATUS_OK or bits of the others. */
+typedef unsigned int rx90_status_t;
+
+#define RX90_STATUS_OK     0U
+#define RX90_STATUS_STROKE 1U /**< a lever would leave its stroke */
+#define RX90_STATUS_PIVOT  2U /**< a pivot of the mass matrix vanishes, or the result is beyond 1e15 */
+#define RX90_STATUS_INPUT  4U /**< an input is not finite or beyond its bound */
 
 /** Indices of the base parameters. */
 enum {
@@ -315,7 +324,7 @@ const char *rx90_model(void);
  *
  * @return RX90_STATUS_OK or RX90_STATUS_INPUT
  */
-int rx90_check_parameters(const rx90_real_t parameters[RX90_N_PARAMETERS]);
+rx90_status_t rx90_check_parameters(const rx90_real_t parameters[RX90_N_PARAMETERS]);
 
 /**
  * Whether standard parameters can be used: finite, and their norm within its bound. Every function that takes them checks
@@ -323,7 +332,7 @@ int rx90_check_parameters(const rx90_real_t parameters[RX90_N_PARAMETERS]);
  *
  * @return RX90_STATUS_OK or RX90_STATUS_INPUT
  */
-int rx90_check_parameters_standard(const rx90_real_t parameters[RX90_N_STANDARD_PARAMETERS]);
+rx90_status_t rx90_check_parameters_standard(const rx90_real_t parameters[RX90_N_STANDARD_PARAMETERS]);
 
 /**
  * Inputs that give the accelerations ddq in the state q, dq; base parameters.
@@ -335,9 +344,9 @@ int rx90_check_parameters_standard(const rx90_real_t parameters[RX90_N_STANDARD_
  * @param[out]  out         [6]   [A]        inputs: motor currents, efforts where undriven
  * @return RX90_STATUS_OK or status bits
  *
- * Operations: 514 (277 mul, 237 add, 0 neg), 10 trig, 6 other.
+ * Operations: 514 (277 mul, 237 add, 0 neg), 10 trig, 6 other calls (sign, select and the like).
  */
-int rx90_inverse_dynamics(
+rx90_status_t rx90_inverse_dynamics(
     const rx90_real_t q[RX90_N_JOINTS],
     const rx90_real_t dq[RX90_N_JOINTS],
     const rx90_real_t ddq[RX90_N_JOINTS],
@@ -354,7 +363,7 @@ int rx90_inverse_dynamics(
  *
  * Operations: 84 (56 mul, 28 add, 0 neg), 10 trig.
  */
-int rx90_gravity(
+rx90_status_t rx90_gravity(
     const rx90_real_t q[RX90_N_JOINTS],
     const rx90_real_t parameters[RX90_N_PARAMETERS],
     rx90_real_t out[RX90_N_JOINTS]);
@@ -368,9 +377,9 @@ int rx90_gravity(
  * @param[out]  out         [6]   [A]      inputs: motor currents, efforts where undriven
  * @return RX90_STATUS_OK or status bits
  *
- * Operations: 470 (260 mul, 210 add, 0 neg), 10 trig, 6 other.
+ * Operations: 470 (260 mul, 210 add, 0 neg), 10 trig, 6 other calls (sign, select and the like).
  */
-int rx90_bias(
+rx90_status_t rx90_bias(
     const rx90_real_t q[RX90_N_JOINTS],
     const rx90_real_t dq[RX90_N_JOINTS],
     const rx90_real_t parameters[RX90_N_PARAMETERS],
@@ -386,7 +395,7 @@ int rx90_bias(
  *
  * Operations: 229 (120 mul, 107 add, 2 neg), 10 trig.
  */
-int rx90_mass_matrix(
+rx90_status_t rx90_mass_matrix(
     const rx90_real_t q[RX90_N_JOINTS],
     const rx90_real_t parameters[RX90_N_PARAMETERS],
     rx90_real_t out[RX90_N_JOINTS * RX90_N_JOINTS]);
@@ -402,9 +411,9 @@ int rx90_mass_matrix(
  * @param[out]  out         [6]   [rad/s^2]  joint accelerations
  * @return RX90_STATUS_OK or status bits
  *
- * Operations: 864 (471 mul, 393 add, 0 neg), 6 div, 10 trig, 6 other.
+ * Operations: 864 (471 mul, 393 add, 0 neg), 6 div, 10 trig, 6 other calls (sign, select and the like).
  */
-int rx90_forward_dynamics(
+rx90_status_t rx90_forward_dynamics(
     const rx90_real_t q[RX90_N_JOINTS],
     const rx90_real_t dq[RX90_N_JOINTS],
     const rx90_real_t input[RX90_N_JOINTS],
@@ -423,12 +432,32 @@ int rx90_forward_dynamics(
  *
  * Operations: 260 (165 mul, 95 add, 0 neg), 10 trig.
  */
-int rx90_energy(
+rx90_status_t rx90_energy(
     const rx90_real_t q[RX90_N_JOINTS],
     const rx90_real_t dq[RX90_N_JOINTS],
     const rx90_real_t parameters[RX90_N_PARAMETERS],
     rx90_real_t kinetic[1],
     rx90_real_t potential[1]);
+
+/**
+ * Efforts of the drives at the joints that give the accelerations ddq in the state q, dq; base
+ * parameters.
+ *
+ * @param[in]   q           [6]   [rad]      joint coordinates; norm at most 10000
+ * @param[in]   dq          [6]   [rad/s]    joint velocities; norm at most 100000
+ * @param[in]   ddq         [6]   [rad/s^2]  joint accelerations; norm at most 1e+08
+ * @param[in]   parameters  [52]             base parameters; norm at most 1e+09
+ * @param[out]  out         [6]   [N m]      efforts at the joints
+ * @return RX90_STATUS_OK or status bits
+ *
+ * Operations: 508 (271 mul, 237 add, 0 neg), 10 trig, 6 other calls (sign, select and the like).
+ */
+rx90_status_t rx90_joint_effort(
+    const rx90_real_t q[RX90_N_JOINTS],
+    const rx90_real_t dq[RX90_N_JOINTS],
+    const rx90_real_t ddq[RX90_N_JOINTS],
+    const rx90_real_t parameters[RX90_N_PARAMETERS],
+    rx90_real_t out[RX90_N_JOINTS]);
 
 /**
  * Inputs per unit of each base parameter.
@@ -440,9 +469,9 @@ int rx90_energy(
  *                                                         row-major
  * @return RX90_STATUS_OK or status bits
  *
- * Operations: 669 (415 mul, 250 add, 4 neg), 10 trig, 6 other.
+ * Operations: 669 (415 mul, 250 add, 4 neg), 10 trig, 6 other calls (sign, select and the like).
  */
-int rx90_regressor(
+rx90_status_t rx90_regressor(
     const rx90_real_t q[RX90_N_JOINTS],
     const rx90_real_t dq[RX90_N_JOINTS],
     const rx90_real_t ddq[RX90_N_JOINTS],
@@ -458,9 +487,9 @@ int rx90_regressor(
  *                                                         row-major
  * @return RX90_STATUS_OK or status bits
  *
- * Operations: 727 (435 mul, 279 add, 13 neg), 10 trig, 6 other.
+ * Operations: 727 (435 mul, 279 add, 13 neg), 10 trig, 6 other calls (sign, select and the like).
  */
-int rx90_regressor_standard(
+rx90_status_t rx90_regressor_standard(
     const rx90_real_t q[RX90_N_JOINTS],
     const rx90_real_t dq[RX90_N_JOINTS],
     const rx90_real_t ddq[RX90_N_JOINTS],
@@ -475,9 +504,9 @@ int rx90_regressor_standard(
  * @param[out]  out  [155]  [A per unit of the parameter]  structural non-zeros, row after row
  * @return RX90_STATUS_OK or status bits
  *
- * Operations: 669 (415 mul, 250 add, 4 neg), 10 trig, 6 other.
+ * Operations: 669 (415 mul, 250 add, 4 neg), 10 trig, 6 other calls (sign, select and the like).
  */
-int rx90_regressor_packed(
+rx90_status_t rx90_regressor_packed(
     const rx90_real_t q[RX90_N_JOINTS],
     const rx90_real_t dq[RX90_N_JOINTS],
     const rx90_real_t ddq[RX90_N_JOINTS],
@@ -495,9 +524,9 @@ int rx90_regressor_packed(
  *                                                           row-major
  * @return RX90_STATUS_OK or status bits
  *
- * Operations: 739 (461 mul, 275 add, 3 neg), 10 trig, 6 other.
+ * Operations: 739 (461 mul, 275 add, 3 neg), 10 trig, 6 other calls (sign, select and the like).
  */
-int rx90_slotine_li_regressor(
+rx90_status_t rx90_slotine_li_regressor(
     const rx90_real_t q[RX90_N_JOINTS],
     const rx90_real_t dq[RX90_N_JOINTS],
     const rx90_real_t dq_r[RX90_N_JOINTS],
@@ -514,9 +543,9 @@ int rx90_slotine_li_regressor(
  * @param[out]  out         [6]   [A]        inputs: motor currents, efforts where undriven
  * @return RX90_STATUS_OK or status bits
  *
- * Operations: 612 (320 mul, 292 add, 0 neg), 10 trig, 6 other.
+ * Operations: 612 (320 mul, 292 add, 0 neg), 10 trig, 6 other calls (sign, select and the like).
  */
-int rx90_inverse_dynamics_standard(
+rx90_status_t rx90_inverse_dynamics_standard(
     const rx90_real_t q[RX90_N_JOINTS],
     const rx90_real_t dq[RX90_N_JOINTS],
     const rx90_real_t ddq[RX90_N_JOINTS],
@@ -533,7 +562,7 @@ int rx90_inverse_dynamics_standard(
  *
  * Operations: 151 (94 mul, 57 add, 0 neg), 10 trig.
  */
-int rx90_gravity_standard(
+rx90_status_t rx90_gravity_standard(
     const rx90_real_t q[RX90_N_JOINTS],
     const rx90_real_t parameters[RX90_N_STANDARD_PARAMETERS],
     rx90_real_t out[RX90_N_JOINTS]);
@@ -547,9 +576,9 @@ int rx90_gravity_standard(
  * @param[out]  out         [6]   [A]      inputs: motor currents, efforts where undriven
  * @return RX90_STATUS_OK or status bits
  *
- * Operations: 558 (297 mul, 261 add, 0 neg), 10 trig, 6 other.
+ * Operations: 558 (297 mul, 261 add, 0 neg), 10 trig, 6 other calls (sign, select and the like).
  */
-int rx90_bias_standard(
+rx90_status_t rx90_bias_standard(
     const rx90_real_t q[RX90_N_JOINTS],
     const rx90_real_t dq[RX90_N_JOINTS],
     const rx90_real_t parameters[RX90_N_STANDARD_PARAMETERS],
@@ -565,7 +594,7 @@ int rx90_bias_standard(
  *
  * Operations: 254 (127 mul, 125 add, 2 neg), 10 trig.
  */
-int rx90_mass_matrix_standard(
+rx90_status_t rx90_mass_matrix_standard(
     const rx90_real_t q[RX90_N_JOINTS],
     const rx90_real_t parameters[RX90_N_STANDARD_PARAMETERS],
     rx90_real_t out[RX90_N_JOINTS * RX90_N_JOINTS]);
@@ -581,9 +610,9 @@ int rx90_mass_matrix_standard(
  * @param[out]  out         [6]   [rad/s^2]  joint accelerations
  * @return RX90_STATUS_OK or status bits
  *
- * Operations: 976 (515 mul, 461 add, 0 neg), 6 div, 10 trig, 6 other.
+ * Operations: 976 (515 mul, 461 add, 0 neg), 6 div, 10 trig, 6 other calls (sign, select and the like).
  */
-int rx90_forward_dynamics_standard(
+rx90_status_t rx90_forward_dynamics_standard(
     const rx90_real_t q[RX90_N_JOINTS],
     const rx90_real_t dq[RX90_N_JOINTS],
     const rx90_real_t input[RX90_N_JOINTS],
@@ -602,12 +631,32 @@ int rx90_forward_dynamics_standard(
  *
  * Operations: 344 (213 mul, 131 add, 0 neg), 10 trig.
  */
-int rx90_energy_standard(
+rx90_status_t rx90_energy_standard(
     const rx90_real_t q[RX90_N_JOINTS],
     const rx90_real_t dq[RX90_N_JOINTS],
     const rx90_real_t parameters[RX90_N_STANDARD_PARAMETERS],
     rx90_real_t kinetic[1],
     rx90_real_t potential[1]);
+
+/**
+ * Efforts of the drives at the joints that give the accelerations ddq in the state q, dq; standard
+ * parameters.
+ *
+ * @param[in]   q           [6]   [rad]      joint coordinates; norm at most 10000
+ * @param[in]   dq          [6]   [rad/s]    joint velocities; norm at most 100000
+ * @param[in]   ddq         [6]   [rad/s^2]  joint accelerations; norm at most 1e+08
+ * @param[in]   parameters  [78]             standard parameters; norm at most 1e+09
+ * @param[out]  out         [6]   [N m]      efforts at the joints
+ * @return RX90_STATUS_OK or status bits
+ *
+ * Operations: 606 (314 mul, 292 add, 0 neg), 10 trig, 6 other calls (sign, select and the like).
+ */
+rx90_status_t rx90_joint_effort_standard(
+    const rx90_real_t q[RX90_N_JOINTS],
+    const rx90_real_t dq[RX90_N_JOINTS],
+    const rx90_real_t ddq[RX90_N_JOINTS],
+    const rx90_real_t parameters[RX90_N_STANDARD_PARAMETERS],
+    rx90_real_t out[RX90_N_JOINTS]);
 
 /**
  * Homogeneous transforms from every link's frame to the base, link after link.
@@ -624,7 +673,7 @@ int rx90_energy_standard(
  *
  * Operations: 99 (56 mul, 25 add, 18 neg), 12 trig.
  */
-int rx90_forward_kinematics(
+rx90_status_t rx90_forward_kinematics(
     const rx90_real_t q[RX90_N_JOINTS],
     rx90_real_t out[16 * RX90_N_LINKS]);
 
@@ -637,7 +686,7 @@ int rx90_forward_kinematics(
  *
  * Operations: 69 (46 mul, 18 add, 5 neg), 10 trig.
  */
-int rx90_jacobian(
+rx90_status_t rx90_jacobian(
     const rx90_real_t q[RX90_N_JOINTS],
     rx90_real_t out[6 * RX90_N_JOINTS]);
 
@@ -654,7 +703,7 @@ int rx90_jacobian(
  *
  * Operations: 18 (18 mul, 0 add, 0 neg).
  */
-int rx90_motor_from_joint(
+rx90_status_t rx90_motor_from_joint(
     const rx90_real_t q[RX90_N_JOINTS],
     const rx90_real_t dq[RX90_N_JOINTS],
     const rx90_real_t ddq[RX90_N_JOINTS],
@@ -675,7 +724,7 @@ int rx90_motor_from_joint(
  *
  * Operations: 18 (18 mul, 0 add, 0 neg).
  */
-int rx90_joint_from_motor(
+rx90_status_t rx90_joint_from_motor(
     const rx90_real_t q_m[RX90_N_JOINTS],
     const rx90_real_t dq_m[RX90_N_JOINTS],
     const rx90_real_t ddq_m[RX90_N_JOINTS],
@@ -686,13 +735,13 @@ int rx90_joint_from_motor(
 /**
  * Joint effort per input.
  *
- * @param[in]   q    [6]  [rad]            joint coordinates; norm at most 10000
- * @param[out]  out  [6]  [(N m) per (A)]  drive gains K
+ * @param[in]   q    [6]  [rad]        joint coordinates; norm at most 10000
+ * @param[out]  out  [6]  [N m per A]  drive gains K
  * @return RX90_STATUS_OK or status bits
  *
  * Operations: 0 (0 mul, 0 add, 0 neg).
  */
-int rx90_drive_gain(
+rx90_status_t rx90_drive_gain(
     const rx90_real_t q[RX90_N_JOINTS],
     rx90_real_t out[RX90_N_JOINTS]);
 
@@ -700,19 +749,19 @@ int rx90_drive_gain(
  * Inputs that give the accelerations ddq, and their derivatives; at a kink of a law, as of dry
  * friction at rest, the mean of both sides; base parameters.
  *
- * @param[in]   q             [6]   [rad]                joint coordinates; norm at most 10000
- * @param[in]   dq            [6]   [rad/s]              joint velocities; norm at most 100000
- * @param[in]   ddq           [6]   [rad/s^2]            joint accelerations; norm at most 1e+08
- * @param[in]   parameters    [52]                       base parameters; norm at most 1e+09
- * @param[out]  input         [6]   [A]                  inputs: motor currents, efforts where undriven
- * @param[out]  input_by_q    [36]  [(A) per (rad)]      d input / d q; 6 x 6, row-major
- * @param[out]  input_by_dq   [36]  [(A) per (rad/s)]    d input / d dq; 6 x 6, row-major
- * @param[out]  input_by_ddq  [36]  [(A) per (rad/s^2)]  d input / d ddq; 6 x 6, row-major
+ * @param[in]   q             [6]   [rad]              joint coordinates; norm at most 10000
+ * @param[in]   dq            [6]   [rad/s]            joint velocities; norm at most 100000
+ * @param[in]   ddq           [6]   [rad/s^2]          joint accelerations; norm at most 1e+08
+ * @param[in]   parameters    [52]                     base parameters; norm at most 1e+09
+ * @param[out]  input         [6]   [A]                inputs: motor currents, efforts where undriven
+ * @param[out]  input_by_q    [36]  [A per rad]        d input / d q; 6 x 6, row-major
+ * @param[out]  input_by_dq   [36]  [A per (rad/s)]    d input / d dq; 6 x 6, row-major
+ * @param[out]  input_by_ddq  [36]  [A per (rad/s^2)]  d input / d ddq; 6 x 6, row-major
  * @return RX90_STATUS_OK or status bits
  *
- * Operations: 2246 (1280 mul, 966 add, 0 neg), 10 trig, 6 other.
+ * Operations: 2246 (1280 mul, 966 add, 0 neg), 10 trig, 6 other calls (sign, select and the like).
  */
-int rx90_inverse_dynamics_derivatives(
+rx90_status_t rx90_inverse_dynamics_derivatives(
     const rx90_real_t q[RX90_N_JOINTS],
     const rx90_real_t dq[RX90_N_JOINTS],
     const rx90_real_t ddq[RX90_N_JOINTS],
@@ -732,14 +781,14 @@ int rx90_inverse_dynamics_derivatives(
  *                                                           norm at most 1e+09
  * @param[in]   parameters    [52]                           base parameters; norm at most 1e+09
  * @param[out]  ddq           [6]   [rad/s^2]                joint accelerations
- * @param[out]  ddq_by_q      [36]  [(rad/s^2) per (rad)]    d ddq / d q; 6 x 6, row-major
+ * @param[out]  ddq_by_q      [36]  [(rad/s^2) per rad]      d ddq / d q; 6 x 6, row-major
  * @param[out]  ddq_by_dq     [36]  [(rad/s^2) per (rad/s)]  d ddq / d dq; 6 x 6, row-major
- * @param[out]  ddq_by_input  [36]  [(rad/s^2) per (A)]      d ddq / d input; 6 x 6, row-major
+ * @param[out]  ddq_by_input  [36]  [(rad/s^2) per A]        d ddq / d input; 6 x 6, row-major
  * @return RX90_STATUS_OK or status bits
  *
- * Operations: 3605 (2016 mul, 1589 add, 0 neg), 6 div, 10 trig, 6 other.
+ * Operations: 3605 (2016 mul, 1589 add, 0 neg), 6 div, 10 trig, 6 other calls (sign, select and the like).
  */
-int rx90_forward_dynamics_derivatives(
+rx90_status_t rx90_forward_dynamics_derivatives(
     const rx90_real_t q[RX90_N_JOINTS],
     const rx90_real_t dq[RX90_N_JOINTS],
     const rx90_real_t input[RX90_N_JOINTS],
@@ -753,19 +802,19 @@ int rx90_forward_dynamics_derivatives(
  * Inputs that give the accelerations ddq, and their derivatives; at a kink of a law, as of dry
  * friction at rest, the mean of both sides; standard parameters.
  *
- * @param[in]   q             [6]   [rad]                joint coordinates; norm at most 10000
- * @param[in]   dq            [6]   [rad/s]              joint velocities; norm at most 100000
- * @param[in]   ddq           [6]   [rad/s^2]            joint accelerations; norm at most 1e+08
- * @param[in]   parameters    [78]                       standard parameters; norm at most 1e+09
- * @param[out]  input         [6]   [A]                  inputs: motor currents, efforts where undriven
- * @param[out]  input_by_q    [36]  [(A) per (rad)]      d input / d q; 6 x 6, row-major
- * @param[out]  input_by_dq   [36]  [(A) per (rad/s)]    d input / d dq; 6 x 6, row-major
- * @param[out]  input_by_ddq  [36]  [(A) per (rad/s^2)]  d input / d ddq; 6 x 6, row-major
+ * @param[in]   q             [6]   [rad]              joint coordinates; norm at most 10000
+ * @param[in]   dq            [6]   [rad/s]            joint velocities; norm at most 100000
+ * @param[in]   ddq           [6]   [rad/s^2]          joint accelerations; norm at most 1e+08
+ * @param[in]   parameters    [78]                     standard parameters; norm at most 1e+09
+ * @param[out]  input         [6]   [A]                inputs: motor currents, efforts where undriven
+ * @param[out]  input_by_q    [36]  [A per rad]        d input / d q; 6 x 6, row-major
+ * @param[out]  input_by_dq   [36]  [A per (rad/s)]    d input / d dq; 6 x 6, row-major
+ * @param[out]  input_by_ddq  [36]  [A per (rad/s^2)]  d input / d ddq; 6 x 6, row-major
  * @return RX90_STATUS_OK or status bits
  *
- * Operations: 2428 (1356 mul, 1072 add, 0 neg), 10 trig, 6 other.
+ * Operations: 2428 (1356 mul, 1072 add, 0 neg), 10 trig, 6 other calls (sign, select and the like).
  */
-int rx90_inverse_dynamics_derivatives_standard(
+rx90_status_t rx90_inverse_dynamics_derivatives_standard(
     const rx90_real_t q[RX90_N_JOINTS],
     const rx90_real_t dq[RX90_N_JOINTS],
     const rx90_real_t ddq[RX90_N_JOINTS],
@@ -785,14 +834,14 @@ int rx90_inverse_dynamics_derivatives_standard(
  *                                                           norm at most 1e+09
  * @param[in]   parameters    [78]                           standard parameters; norm at most 1e+09
  * @param[out]  ddq           [6]   [rad/s^2]                joint accelerations
- * @param[out]  ddq_by_q      [36]  [(rad/s^2) per (rad)]    d ddq / d q; 6 x 6, row-major
+ * @param[out]  ddq_by_q      [36]  [(rad/s^2) per rad]      d ddq / d q; 6 x 6, row-major
  * @param[out]  ddq_by_dq     [36]  [(rad/s^2) per (rad/s)]  d ddq / d dq; 6 x 6, row-major
- * @param[out]  ddq_by_input  [36]  [(rad/s^2) per (A)]      d ddq / d input; 6 x 6, row-major
+ * @param[out]  ddq_by_input  [36]  [(rad/s^2) per A]        d ddq / d input; 6 x 6, row-major
  * @return RX90_STATUS_OK or status bits
  *
- * Operations: 3857 (2123 mul, 1734 add, 0 neg), 6 div, 10 trig, 6 other.
+ * Operations: 3857 (2123 mul, 1734 add, 0 neg), 6 div, 10 trig, 6 other calls (sign, select and the like).
  */
-int rx90_forward_dynamics_derivatives_standard(
+rx90_status_t rx90_forward_dynamics_derivatives_standard(
     const rx90_real_t q[RX90_N_JOINTS],
     const rx90_real_t dq[RX90_N_JOINTS],
     const rx90_real_t input[RX90_N_JOINTS],
@@ -801,6 +850,66 @@ int rx90_forward_dynamics_derivatives_standard(
     rx90_real_t ddq_by_q[RX90_N_JOINTS * RX90_N_JOINTS],
     rx90_real_t ddq_by_dq[RX90_N_JOINTS * RX90_N_JOINTS],
     rx90_real_t ddq_by_input[RX90_N_JOINTS * RX90_N_JOINTS]);
+
+/**
+ * External efforts at the joints by the generalised momentum, with a delay of 1 / gain; state: zero at
+ * first, then what the step before gave; base parameters.
+ *
+ * @param[in]   q           [6]   [rad]       joint coordinates; norm at most 10000
+ * @param[in]   dq          [6]   [rad/s]     joint velocities; norm at most 100000
+ * @param[in]   input       [6]   [A]         inputs: motor currents, efforts where undriven; norm at most
+ *                                            1e+09
+ * @param[in]   dt          [1]   [s]         time step; norm at most 10000
+ * @param[in]   gain        [6]   [1/s]       gains of the observer, gain dt below 1; norm at most 100000
+ * @param[in]   parameters  [52]              base parameters; norm at most 1e+09
+ * @param[in]   state       [6]   [kg m^2/s]  state of the observer: the momentum that the model expects; norm
+ *                                            at most 1e+09
+ * @param[out]  state_next  [6]   [kg m^2/s]  state after the step
+ * @param[out]  external    [6]   [N m]       efforts that act on the arm from outside
+ * @return RX90_STATUS_OK or status bits
+ *
+ * Operations: 474 (269 mul, 199 add, 6 neg), 10 trig, 6 other calls (sign, select and the like).
+ */
+rx90_status_t rx90_momentum_observer_step(
+    const rx90_real_t q[RX90_N_JOINTS],
+    const rx90_real_t dq[RX90_N_JOINTS],
+    const rx90_real_t input[RX90_N_JOINTS],
+    const rx90_real_t dt[1],
+    const rx90_real_t gain[RX90_N_JOINTS],
+    const rx90_real_t parameters[RX90_N_PARAMETERS],
+    const rx90_real_t state[RX90_N_OBSERVER_STATES],
+    rx90_real_t state_next[RX90_N_OBSERVER_STATES],
+    rx90_real_t external[RX90_N_JOINTS]);
+
+/**
+ * External efforts at the joints by the generalised momentum, with a delay of 1 / gain; state: zero at
+ * first, then what the step before gave; standard parameters.
+ *
+ * @param[in]   q           [6]   [rad]       joint coordinates; norm at most 10000
+ * @param[in]   dq          [6]   [rad/s]     joint velocities; norm at most 100000
+ * @param[in]   input       [6]   [A]         inputs: motor currents, efforts where undriven; norm at most
+ *                                            1e+09
+ * @param[in]   dt          [1]   [s]         time step; norm at most 10000
+ * @param[in]   gain        [6]   [1/s]       gains of the observer, gain dt below 1; norm at most 100000
+ * @param[in]   parameters  [78]              standard parameters; norm at most 1e+09
+ * @param[in]   state       [6]   [kg m^2/s]  state of the observer: the momentum that the model expects; norm
+ *                                            at most 1e+09
+ * @param[out]  state_next  [6]   [kg m^2/s]  state after the step
+ * @param[out]  external    [6]   [N m]       efforts that act on the arm from outside
+ * @return RX90_STATUS_OK or status bits
+ *
+ * Operations: 613 (344 mul, 263 add, 6 neg), 10 trig, 6 other calls (sign, select and the like).
+ */
+rx90_status_t rx90_momentum_observer_step_standard(
+    const rx90_real_t q[RX90_N_JOINTS],
+    const rx90_real_t dq[RX90_N_JOINTS],
+    const rx90_real_t input[RX90_N_JOINTS],
+    const rx90_real_t dt[1],
+    const rx90_real_t gain[RX90_N_JOINTS],
+    const rx90_real_t parameters[RX90_N_STANDARD_PARAMETERS],
+    const rx90_real_t state[RX90_N_OBSERVER_STATES],
+    rx90_real_t state_next[RX90_N_OBSERVER_STATES],
+    rx90_real_t external[RX90_N_JOINTS]);
 
 #ifdef __cplusplus
 }

@@ -6,7 +6,7 @@
  * Arm rx90, description 10f0505273a073e2.
  * SPDX-License-Identifier: 0BSD
  *
- * Operations: 470 (260 mul, 210 add, 0 neg), 10 trig, 6 other.
+ * Operations: 470 (260 mul, 210 add, 0 neg), 10 trig, 6 other calls (sign, select and the like).
  *
  * @param[in]   q           [6]   [rad]    joint coordinates; norm at most 10000
  * @param[in]   dq          [6]   [rad/s]  joint velocities; norm at most 100000
@@ -79,11 +79,11 @@
  */
 #include "rx90_private.h"
 
-#if RX90_GENERATION != 0xD1F0D18FUL
+#if RX90_GENERATION != 0x88006983UL
 #error "rx90.h and rx90_bias.c are of different generations: generate the arm again"
 #endif
 
-int rx90_bias(
+rx90_status_t rx90_bias(
     const rx90_real_t q[RX90_N_JOINTS],
     const rx90_real_t dq[RX90_N_JOINTS],
     const rx90_real_t parameters[RX90_N_PARAMETERS],
@@ -92,7 +92,7 @@ int rx90_bias(
     enum { ZZ1R = 0, XX2R, XY2, XZ2R, YZ2, ZZ2R, MX2R, MY2, XX3R, XY3, XZ3, YZ3, ZZ3R, MX3, MY3R, XX4R, XY4,
         XZ4, YZ4, ZZ4R, MX4, MY4R, XX5R, XY5, XZ5, YZ5, ZZ5R, MX5, MY5R, XX6R, XY6, XZ6, YZ6, ZZ6, MX6, MY6,
         FV1, FC1, FV2, FC2, FV3, FC3, IA3, FV4, FC4, IA4, FV5, FC5, IA5, FV6, FC6, IA6 };
-    int status = RX90_STATUS_OK;
+    rx90_status_t status = RX90_STATUS_OK;
 
     if (!rx90_within_joints(q, RX90_C(1.0e8))
         || !rx90_within_joints(dq, RX90_C(1.0e10))
@@ -114,36 +114,36 @@ int rx90_bias(
     RX90_SINCOS(q[4], &t20, &t19);
     rx90_real_t t25, t39;
     RX90_SINCOS(q[5], &t25, &t39);
-    const rx90_real_t t1 = t0 * dq[0];
+    const rx90_real_t t1 = t0 * dq[0]; /* link j2: motion */
     const rx90_real_t t4 = t3 * dq[0];
-    const rx90_real_t t6 = t2 * t1 + t5 * t4;
+    const rx90_real_t t6 = t2 * t1 + t5 * t4; /* link j3: motion */
     const rx90_real_t t7 = t2 * t4 - t5 * t1;
     const rx90_real_t t8 = t6 * t7;
     const rx90_real_t t10 = dq[1] + dq[2];
     const rx90_real_t t11 = t7 * t10;
-    const rx90_real_t t12 = RX90_C(2.0) * t11;
+    const rx90_real_t t12 = RX90_C(2.0) * t11; /* link j4: motion */
     const rx90_real_t t14 = t13 * t12 - t9 * t8;
     const rx90_real_t t15 = t9 * t6 - t13 * t10;
     const rx90_real_t t16 = dq[3] + t7;
     const rx90_real_t t17 = t15 * t16;
     const rx90_real_t t18 = t14 + t17;
-    const rx90_real_t t21 = t19 * t15 + t20 * t16;
+    const rx90_real_t t21 = t19 * t15 + t20 * t16; /* link j5: motion */
     const rx90_real_t t22 = t20 * t15 - t19 * t16;
     const rx90_real_t t23 = t21 * t22;
-    const rx90_real_t t24 = t18 + t23;
-    const rx90_real_t t26 = t13 * t8 + t9 * t12;
+    const rx90_real_t t24 = t18 + t23; /* link j6: motion */
+    const rx90_real_t t26 = t13 * t8 + t9 * t12; /* link j4: motion */
     const rx90_real_t t27 = t13 * t6 + t9 * t10;
     const rx90_real_t t28 = t27 * t16;
     const rx90_real_t t29 = t28 - t26;
-    const rx90_real_t t30 = t28 + t29;
-    const rx90_real_t t31 = t15 * t27;
-    const rx90_real_t t32 = t6 * t10;
-    const rx90_real_t t33 = t32 - t31;
+    const rx90_real_t t30 = t28 + t29; /* link j5: motion */
+    const rx90_real_t t31 = t15 * t27; /* link j4: motion */
+    const rx90_real_t t32 = t6 * t10; /* link j3: motion */
+    const rx90_real_t t33 = t32 - t31; /* link j5: motion */
     const rx90_real_t t34 = t20 * t33 + t19 * t30;
     const rx90_real_t t35 = dq[4] + t27;
     const rx90_real_t t36 = t22 * t35;
     const rx90_real_t t37 = t34 + t36;
-    const rx90_real_t t38 = t36 + t37;
+    const rx90_real_t t38 = t36 + t37; /* link j6: motion */
     const rx90_real_t t40 = t25 * t24 + t39 * t38;
     const rx90_real_t t41 = t25 * t21 + t39 * t35;
     const rx90_real_t t42 = t22 - dq[5];
@@ -152,144 +152,177 @@ int rx90_bias(
     const rx90_real_t t45 = t25 * t38 - t39 * t24;
     const rx90_real_t t46 = t39 * t21 - t25 * t35;
     const rx90_real_t t47 = t46 * t42;
-    const rx90_real_t t48 = t47 + (t45 + t47);
-    const rx90_real_t t49 = t19 * t33 - t20 * t30;
+    const rx90_real_t t48 = t47 + (t45 + t47); /* link j6: force and moment */
+    const rx90_real_t t49 = t19 * t33 - t20 * t30; /* link j5: motion */
     const rx90_real_t t50 = t21 * t35;
     const rx90_real_t t51 = t49 + t50;
-    const rx90_real_t t52 = t46 * t41;
-    const rx90_real_t t53 = t51 + t52;
+    const rx90_real_t t52 = t46 * t41; /* link j6: motion */
+    const rx90_real_t t53 = t51 + t52; /* link j6: force and moment */
     const rx90_real_t t54 = parameters[XX6R] * t44 - parameters[ZZ6] * t43 - parameters[XY6] * t48
         + parameters[XZ6] * t53;
-    const rx90_real_t t55 = t41 * t41;
+    const rx90_real_t t55 = t41 * t41; /* link j6: motion */
     const rx90_real_t t56 = t42 * t42;
-    const rx90_real_t t57 = t4 * t4;
+    const rx90_real_t t57 = t4 * t4; /* link j2: motion */
     const rx90_real_t t58 = dq[1] * dq[1];
     const rx90_real_t t59 = RX90_C(-9.81) * t0;
-    const rx90_real_t t60 = t59 + RX90_C(0.45) * (t58 + t57);
-    const rx90_real_t t61 = t1 * t4;
+    const rx90_real_t t60 = t59 + RX90_C(0.45) * (t58 + t57); /* link j3: motion */
+    const rx90_real_t t61 = t1 * t4; /* link j2: motion */
     const rx90_real_t t62 = RX90_C(9.81) * t3;
-    const rx90_real_t t63 = t62 + RX90_C(0.45) * t61;
+    const rx90_real_t t63 = t62 + RX90_C(0.45) * t61; /* link j3: motion */
     const rx90_real_t t64 = t2 * t60 - t5 * t63;
-    const rx90_real_t t65 = t64 + RX90_C(-0.45) * t8;
-    const rx90_real_t t66 = dq[1] * t1;
-    const rx90_real_t t67 = RX90_C(0.9) * t66;
-    const rx90_real_t t68 = t67 - RX90_C(-0.9) * t11;
+    const rx90_real_t t65 = t64 + RX90_C(-0.45) * t8; /* link j4: motion */
+    const rx90_real_t t66 = dq[1] * t1; /* link j2: motion */
+    const rx90_real_t t67 = RX90_C(0.9) * t66; /* link j3: motion */
+    const rx90_real_t t68 = t67 - RX90_C(-0.9) * t11; /* link j4: motion */
     const rx90_real_t t69 = t9 * t65 + t13 * t68;
-    const rx90_real_t t70 = t5 * t60 + t2 * t63;
+    const rx90_real_t t70 = t5 * t60 + t2 * t63; /* link j3: motion */
     const rx90_real_t t71 = t6 * t6;
     const rx90_real_t t72 = t10 * t10;
-    const rx90_real_t t73 = t71 + t72;
+    const rx90_real_t t73 = t71 + t72; /* link j4: motion */
     const rx90_real_t t74 = t70 + RX90_C(-0.45) * t73;
-    const rx90_real_t t75 = t20 * t69 + t19 * t74;
+    const rx90_real_t t75 = t20 * t69 + t19 * t74; /* link j5: motion */
+    /* link j6: force and moment */
     const rx90_real_t t76 = t54 - parameters[YZ6] * (t55 - t56) - parameters[MY6] * t75;
     const rx90_real_t t77 = t44 - t43;
     const rx90_real_t t78 = t51 - t52;
     const rx90_real_t t79 = parameters[XY6] * t77 - t47 * (parameters[ZZ6] - parameters[XX6R])
         + parameters[YZ6] * t78;
-    const rx90_real_t t80 = t46 * t46;
+    const rx90_real_t t80 = t46 * t46; /* link j6: motion */
+    /* link j6: force and moment */
     const rx90_real_t t81 = t79 + parameters[XZ6] * (t80 - t56) + parameters[MX6] * t75;
-    const rx90_real_t t82 = t50 + t51;
+    const rx90_real_t t82 = t50 + t51; /* link j6: motion */
     const rx90_real_t t83 = t18 - t23;
+    /* link j5: force and moment */
     const rx90_real_t t84 = parameters[XZ5] * t83 - (parameters[XX5R] * t37 + parameters[ZZ5R] * t36
         + parameters[XY5] * t82);
-    const rx90_real_t t85 = t22 * t22;
+    const rx90_real_t t85 = t22 * t22; /* link j5: motion */
     const rx90_real_t t86 = t35 * t35;
-    const rx90_real_t t87 = t13 * t65 - t9 * t68;
+    const rx90_real_t t87 = t13 * t65 - t9 * t68; /* link j4: motion */
+    /* link j6: what it passes on */
     const rx90_real_t t88 = t84 + parameters[YZ5] * (t85 - t86) - parameters[MY5R] * t87 + (t25 * t81
         - t39 * t76);
+    /* link j6: force and moment */
     const rx90_real_t t89 = parameters[XX6R] * t52 - parameters[ZZ6] * t51 + parameters[YZ6] * t45
         - parameters[XZ6] * t40;
-    const rx90_real_t t90 = t19 * t69 - t20 * t74;
+    const rx90_real_t t90 = t19 * t69 - t20 * t74; /* link j5: motion */
+    /* link j6: force and moment */
     const rx90_real_t t91 = parameters[MX6] * (t25 * t90 + t39 * t87) + parameters[MY6] * (t39 * t90
         - t25 * t87);
     const rx90_real_t t92 = t89 + parameters[XY6] * (t80 - t55) + t91;
+    /* link j5: force and moment */
     const rx90_real_t t93 = t50 * (parameters[XX5R] - parameters[ZZ5R]) - parameters[XY5] * t38
         + parameters[YZ5] * t24;
-    const rx90_real_t t94 = t21 * t21;
+    const rx90_real_t t94 = t21 * t21; /* link j5: motion */
+    /* link j6: what it passes on */
     const rx90_real_t t95 = t93 + parameters[XZ5] * (t86 - t94) + parameters[MX5] * t87 + t92;
-    const rx90_real_t t96 = t17 + t18;
+    const rx90_real_t t96 = t17 + t18; /* link j5: motion */
     const rx90_real_t t97 = t32 + t31;
+    /* link j4: force and moment */
     const rx90_real_t t98 = parameters[XX4R] * t29 + parameters[ZZ4R] * t28 + parameters[XY4] * t96
         + parameters[XZ4] * t97;
-    const rx90_real_t t99 = t27 * t27;
+    const rx90_real_t t99 = t27 * t27; /* link j4: motion */
     const rx90_real_t t100 = t16 * t16;
+    /* link j5: what it passes on */
     const rx90_real_t t101 = t98 - parameters[YZ4] * (t99 - t100) - parameters[MY4R] * t74 + (t20 * t95
         - t19 * t88);
+    /* link j5: force and moment */
     const rx90_real_t t102 = parameters[ZZ5R] * t18 + parameters[XX5R] * t23 - parameters[YZ5] * t49
         - parameters[XZ5] * t34;
     const rx90_real_t t103 = t102 + parameters[XY5] * (t94 - t85) + (parameters[MX5] * t75
         + parameters[MY5R] * t90);
-    const rx90_real_t t104 = t103 + (t25 * t76 + t39 * t81);
+    const rx90_real_t t104 = t103 + (t25 * t76 + t39 * t81); /* link j6: what it passes on */
+    /* link j4: force and moment */
     const rx90_real_t t105 = t17 * (parameters[ZZ4R] - parameters[XX4R]) + parameters[XY4] * t30
         + parameters[YZ4] * t33;
-    const rx90_real_t t106 = t15 * t15;
+    const rx90_real_t t106 = t15 * t15; /* link j4: motion */
+    /* link j5: what it passes on */
     const rx90_real_t t107 = t105 + parameters[XZ4] * (t106 - t100) + parameters[MX4] * t74 + t104;
+    /* link j6: force and moment */
     const rx90_real_t t108 = parameters[MY6] * t78 - parameters[MX6] * (t55 + t56);
     const rx90_real_t t109 = parameters[MX6] * t53 + parameters[MY6] * (t80 + t56);
+    /* link j6: what it passes on */
     const rx90_real_t t110 = t39 * t108 + t25 * t109 - (parameters[MX5] * (t85 + t86)
         + parameters[MY5R] * t24);
     const rx90_real_t t111 = parameters[MX5] * t83 - parameters[MY5R] * (t94 + t86) - (parameters[MX6] * t48
         + parameters[MY6] * t77);
+    /* link j5: what it passes on */
     const rx90_real_t t112 = parameters[MY4R] * t33 - parameters[MX4] * (t99 + t100) + (t19 * t110
         - t20 * t111);
+    /* link j6: what it passes on */
     const rx90_real_t t113 = parameters[MX5] * t82 - parameters[MY5R] * t38 + (t39 * t109 - t25 * t108);
+    /* link j5: what it passes on */
     const rx90_real_t t114 = parameters[MX4] * t97 + parameters[MY4R] * (t106 + t100) + t113;
-    const rx90_real_t t115 = t13 * t112 - t9 * t114;
-    const rx90_real_t t116 = RX90_C(-2.0) * t32;
+    const rx90_real_t t115 = t13 * t112 - t9 * t114; /* link j4: what it passes on */
+    const rx90_real_t t116 = RX90_C(-2.0) * t32; /* link j4: motion */
+    /* link j3: force and moment */
     const rx90_real_t t117 = parameters[XX3R] * t11 + parameters[ZZ3R] * t11 + parameters[XY3] * t116
         + parameters[XZ3] * t8;
-    const rx90_real_t t118 = t7 * t7;
+    const rx90_real_t t118 = t7 * t7; /* link j3: motion */
+    /* link j4: what it passes on */
     const rx90_real_t t119 = t117 + parameters[YZ3] * (t118 - t72) + parameters[MY3R] * t67 + (t13 * t107
         - t9 * t101 + RX90_C(-0.45) * t115);
+    /* link j4: force and moment */
     const rx90_real_t t120 = parameters[XX4R] * t31 - parameters[ZZ4R] * t32 - parameters[YZ4] * t14
         + parameters[XZ4] * t26;
     const rx90_real_t t121 = t120 + parameters[XY4] * (t106 - t99) + (parameters[MX4] * t87
         + parameters[MY4R] * t69);
-    const rx90_real_t t122 = t121 + (t20 * t88 + t19 * t95);
+    const rx90_real_t t122 = t121 + (t20 * t88 + t19 * t95); /* link j5: what it passes on */
+    /* link j3: force and moment */
     const rx90_real_t t123 = t32 * (parameters[XX3R] - parameters[ZZ3R]) + parameters[XY3] * t12
         - parameters[YZ3] * t8;
+    /* link j4: what it passes on */
     const rx90_real_t t124 = t123 - parameters[XZ3] * (t71 - t72) - parameters[MX3] * t67 + t122;
-    const rx90_real_t t125 = dq[1] * t4;
+    const rx90_real_t t125 = dq[1] * t4; /* link j2: motion */
+    /* link j2: force and moment */
     const rx90_real_t t126 = parameters[XX2R] * t125 + parameters[ZZ2R] * t125
         + parameters[XY2] * (RX90_C(-2.0) * t66);
+    /* link j3: what it passes on */
     const rx90_real_t t127 = t126 + parameters[XZ2R] * t61 + parameters[YZ2] * (t57 - t58) + (t2 * t119
         - t5 * t124);
     const rx90_real_t t128 = t5 * t119 + t2 * t124 + RX90_C(0.45) * (parameters[MX3] * t116
         - parameters[MY3R] * t12 + t115);
+    /* link j2: force and moment */
     const rx90_real_t t129 = t66 * (parameters[XX2R] - parameters[ZZ2R])
         + parameters[XY2] * (RX90_C(2.0) * t125) - parameters[YZ2] * t61;
-    const rx90_real_t t130 = t1 * t1;
+    const rx90_real_t t130 = t1 * t1; /* link j2: motion */
+    /* link j2: what it passes on */
     const rx90_real_t t131 = t0 * t127 + t3 * (t129 + parameters[XZ2R] * (t58 - t130) + t128);
-    const rx90_real_t t132 = rx90_sign(dq[0]);
+    const rx90_real_t t132 = rx90_sign(dq[0]); /* joint j1: coulomb_friction */
     const rx90_real_t t133 = RX90_C(3.3333333333333335) * (parameters[FV1] * (RX90_C(1.0e2) * dq[0])
         + parameters[FC1] * t132) + RX90_C(0.03333333333333333) * t131;
     out[0] = t133;
-    const rx90_real_t t134 = t9 * t112 + t13 * t114;
+    const rx90_real_t t134 = t9 * t112 + t13 * t114; /* link j4: what it passes on */
+    /* link j3: force and moment */
     const rx90_real_t t135 = parameters[XY3] * (t71 - t118) - parameters[XX3R] * t8 + (parameters[MX3] * t70
         + parameters[MY3R] * t64);
+    /* link j4: what it passes on */
     const rx90_real_t t136 = t135 + (t13 * t101 + t9 * t107 + RX90_C(-0.45) * t134);
+    /* link j3: what it passes on */
     const rx90_real_t t137 = t5 * (parameters[MY3R] * t8 - parameters[MX3] * (t118 + t72) + t134);
+    /* link j5: what it passes on */
     const rx90_real_t t138 = parameters[MX4] * t96 - parameters[MY4R] * t30 + (t20 * t110 + t19 * t111);
+    /* link j3: what it passes on */
     const rx90_real_t t139 = t137 + t2 * (parameters[MX3] * t8 - parameters[MY3R] * t73 + t138);
+    /* link j2: force and moment */
     const rx90_real_t t140 = parameters[XY2] * (t130 - t57) - parameters[XX2R] * t61 + (parameters[MX2R] * t62
         + parameters[MY2] * t59);
-    const rx90_real_t t141 = rx90_sign(dq[1]);
+    const rx90_real_t t141 = rx90_sign(dq[1]); /* joint j2: coulomb_friction */
     const rx90_real_t t142 = RX90_C(3.3333333333333335) * (parameters[FV2] * (RX90_C(1.0e2) * dq[1])
         + parameters[FC2] * t141) + RX90_C(0.03333333333333333) * (t140 + (t136 + RX90_C(0.45) * t139));
     out[1] = t142;
-    const rx90_real_t t143 = rx90_sign(dq[2]);
+    const rx90_real_t t143 = rx90_sign(dq[2]); /* joint j3: coulomb_friction */
     const rx90_real_t t144 = RX90_C(3.3333333333333335) * (parameters[FV3] * (RX90_C(1.0e2) * dq[2])
         + parameters[FC3] * t143) + RX90_C(0.03333333333333333) * t136;
     out[2] = t144;
-    const rx90_real_t t145 = rx90_sign(dq[3]);
+    const rx90_real_t t145 = rx90_sign(dq[3]); /* joint j4: coulomb_friction */
     const rx90_real_t t146 = RX90_C(5.0) * (parameters[FV4] * (RX90_C(50.0) * dq[3]) + parameters[FC4] * t145)
         + RX90_C(0.1) * t122;
     out[3] = t146;
-    const rx90_real_t t147 = rx90_sign(dq[4]);
+    const rx90_real_t t147 = rx90_sign(dq[4]); /* joint j5: coulomb_friction */
     const rx90_real_t t148 = RX90_C(5.0) * (parameters[FV5] * (RX90_C(50.0) * dq[4]) + parameters[FC5] * t147)
         + RX90_C(0.1) * t104;
     out[4] = t148;
-    const rx90_real_t t149 = rx90_sign(dq[5]);
+    const rx90_real_t t149 = rx90_sign(dq[5]); /* joint j6: coulomb_friction */
     const rx90_real_t t150 = RX90_C(5.0) * (parameters[FV6] * (RX90_C(30.0) * dq[5]) + parameters[FC6] * t149)
         + RX90_C(0.16666666666666666) * t92;
     out[5] = t150;

@@ -6,7 +6,7 @@
  * Arm rx90, description 10f0505273a073e2.
  * SPDX-License-Identifier: 0BSD
  *
- * Operations: 558 (297 mul, 261 add, 0 neg), 10 trig, 6 other.
+ * Operations: 558 (297 mul, 261 add, 0 neg), 10 trig, 6 other calls (sign, select and the like).
  *
  * @param[in]   q           [6]   [rad]    joint coordinates; norm at most 10000
  * @param[in]   dq          [6]   [rad/s]  joint velocities; norm at most 100000
@@ -105,11 +105,11 @@
  */
 #include "rx90_private.h"
 
-#if RX90_GENERATION != 0xD1F0D18FUL
+#if RX90_GENERATION != 0x88006983UL
 #error "rx90.h and rx90_bias_standard.c are of different generations: generate the arm again"
 #endif
 
-int rx90_bias_standard(
+rx90_status_t rx90_bias_standard(
     const rx90_real_t q[RX90_N_JOINTS],
     const rx90_real_t dq[RX90_N_JOINTS],
     const rx90_real_t parameters[RX90_N_STANDARD_PARAMETERS],
@@ -119,7 +119,7 @@ int rx90_bias_standard(
         M2, XX3, XY3, XZ3, YY3, YZ3, ZZ3, MX3, MY3, MZ3, M3, XX4, XY4, XZ4, YY4, YZ4, ZZ4, MX4, MY4, MZ4, M4,
         XX5, XY5, XZ5, YY5, YZ5, ZZ5, MX5, MY5, MZ5, M5, XX6, XY6, XZ6, YY6, YZ6, ZZ6, MX6, MY6, MZ6, M6, FV1,
         FC1, IA1, FV2, FC2, IA2, FV3, FC3, IA3, FV4, FC4, IA4, FV5, FC5, IA5, FV6, FC6, IA6 };
-    int status = RX90_STATUS_OK;
+    rx90_status_t status = RX90_STATUS_OK;
 
     if (!rx90_within_joints(q, RX90_C(1.0e8))
         || !rx90_within_joints(dq, RX90_C(1.0e10))
@@ -141,36 +141,36 @@ int rx90_bias_standard(
     RX90_SINCOS(q[4], &t20, &t19);
     rx90_real_t t25, t39;
     RX90_SINCOS(q[5], &t25, &t39);
-    const rx90_real_t t1 = t0 * dq[0];
+    const rx90_real_t t1 = t0 * dq[0]; /* link j2: motion */
     const rx90_real_t t4 = t3 * dq[0];
-    const rx90_real_t t6 = t2 * t1 + t5 * t4;
+    const rx90_real_t t6 = t2 * t1 + t5 * t4; /* link j3: motion */
     const rx90_real_t t7 = t5 * t1 - t2 * t4;
     const rx90_real_t t8 = t6 * t7;
     const rx90_real_t t10 = dq[1] + dq[2];
     const rx90_real_t t11 = t10 * t7;
-    const rx90_real_t t12 = RX90_C(2.0) * t11;
+    const rx90_real_t t12 = RX90_C(2.0) * t11; /* link j4: motion */
     const rx90_real_t t14 = t9 * t8 - t13 * t12;
     const rx90_real_t t15 = t9 * t6 - t13 * t10;
     const rx90_real_t t16 = t7 - dq[3];
     const rx90_real_t t17 = t15 * t16;
     const rx90_real_t t18 = t14 - t17;
-    const rx90_real_t t21 = t20 * t16 - t19 * t15;
+    const rx90_real_t t21 = t20 * t16 - t19 * t15; /* link j5: motion */
     const rx90_real_t t22 = t20 * t15 + t19 * t16;
     const rx90_real_t t23 = t21 * t22;
-    const rx90_real_t t24 = t18 - t23;
-    const rx90_real_t t26 = t13 * t8 + t9 * t12;
+    const rx90_real_t t24 = t18 - t23; /* link j6: motion */
+    const rx90_real_t t26 = t13 * t8 + t9 * t12; /* link j4: motion */
     const rx90_real_t t27 = t9 * t10 + t13 * t6;
     const rx90_real_t t28 = t27 * t16;
     const rx90_real_t t29 = t26 - t28;
-    const rx90_real_t t30 = t29 - t28;
-    const rx90_real_t t31 = t15 * t27;
-    const rx90_real_t t32 = t10 * t6;
-    const rx90_real_t t33 = t32 - t31;
+    const rx90_real_t t30 = t29 - t28; /* link j5: motion */
+    const rx90_real_t t31 = t15 * t27; /* link j4: motion */
+    const rx90_real_t t32 = t10 * t6; /* link j3: motion */
+    const rx90_real_t t33 = t32 - t31; /* link j5: motion */
     const rx90_real_t t34 = t20 * t33 + t19 * t30;
     const rx90_real_t t35 = dq[4] + t27;
     const rx90_real_t t36 = t22 * t35;
     const rx90_real_t t37 = t34 + t36;
-    const rx90_real_t t38 = t36 + t37;
+    const rx90_real_t t38 = t36 + t37; /* link j6: motion */
     const rx90_real_t t40 = t25 * t24 + t39 * t38;
     const rx90_real_t t41 = t39 * t35 - t25 * t21;
     const rx90_real_t t42 = t22 - dq[5];
@@ -180,165 +180,207 @@ int rx90_bias_standard(
     const rx90_real_t t46 = t39 * t21 + t25 * t35;
     const rx90_real_t t47 = t46 * t42;
     const rx90_real_t t48 = t45 + t47;
-    const rx90_real_t t49 = t47 + t48;
+    const rx90_real_t t49 = t47 + t48; /* link j6: force and moment */
     const rx90_real_t t50 = parameters[XX6] * t44 + t43 * (parameters[YY6] - parameters[ZZ6])
         + parameters[XY6] * t49;
-    const rx90_real_t t51 = t20 * t30 - t19 * t33;
+    const rx90_real_t t51 = t20 * t30 - t19 * t33; /* link j5: motion */
     const rx90_real_t t52 = t21 * t35;
     const rx90_real_t t53 = t51 + t52;
-    const rx90_real_t t54 = t46 * t41;
-    const rx90_real_t t55 = t53 + t54;
-    const rx90_real_t t56 = t41 * t41;
+    const rx90_real_t t54 = t46 * t41; /* link j6: motion */
+    const rx90_real_t t55 = t53 + t54; /* link j6: force and moment */
+    const rx90_real_t t56 = t41 * t41; /* link j6: motion */
     const rx90_real_t t57 = t42 * t42;
-    const rx90_real_t t58 = t4 * t4;
+    const rx90_real_t t58 = t4 * t4; /* link j2: motion */
     const rx90_real_t t59 = dq[1] * dq[1];
     const rx90_real_t t60 = RX90_C(-9.81) * t0;
-    const rx90_real_t t61 = t60 + RX90_C(0.45) * (t58 + t59);
-    const rx90_real_t t62 = t1 * t4;
+    const rx90_real_t t61 = t60 + RX90_C(0.45) * (t58 + t59); /* link j3: motion */
+    const rx90_real_t t62 = t1 * t4; /* link j2: motion */
     const rx90_real_t t63 = RX90_C(9.81) * t3;
-    const rx90_real_t t64 = t63 + RX90_C(0.45) * t62;
+    const rx90_real_t t64 = t63 + RX90_C(0.45) * t62; /* link j3: motion */
     const rx90_real_t t65 = t2 * t61 - t5 * t64;
-    const rx90_real_t t66 = t65 + RX90_C(0.45) * t8;
-    const rx90_real_t t67 = dq[1] * t1;
-    const rx90_real_t t68 = RX90_C(0.9) * t67;
-    const rx90_real_t t69 = t68 + RX90_C(-0.9) * t11;
+    const rx90_real_t t66 = t65 + RX90_C(0.45) * t8; /* link j4: motion */
+    const rx90_real_t t67 = dq[1] * t1; /* link j2: motion */
+    const rx90_real_t t68 = RX90_C(0.9) * t67; /* link j3: motion */
+    const rx90_real_t t69 = t68 + RX90_C(-0.9) * t11; /* link j4: motion */
     const rx90_real_t t70 = t9 * t66 + t13 * t69;
-    const rx90_real_t t71 = t5 * t61 + t2 * t64;
+    const rx90_real_t t71 = t5 * t61 + t2 * t64; /* link j3: motion */
     const rx90_real_t t72 = t6 * t6;
     const rx90_real_t t73 = t10 * t10;
-    const rx90_real_t t74 = t73 + t72;
+    const rx90_real_t t74 = t73 + t72; /* link j4: motion */
     const rx90_real_t t75 = t71 + RX90_C(-0.45) * t74;
-    const rx90_real_t t76 = t20 * t70 + t19 * t75;
+    const rx90_real_t t76 = t20 * t70 + t19 * t75; /* link j5: motion */
     const rx90_real_t t77 = t20 * t75 - t19 * t70;
-    const rx90_real_t t78 = t9 * t69 - t13 * t66;
-    const rx90_real_t t79 = t25 * t77 + t39 * t78;
+    const rx90_real_t t78 = t9 * t69 - t13 * t66; /* link j4: motion */
+    const rx90_real_t t79 = t25 * t77 + t39 * t78; /* link j6: motion */
+    /* link j6: force and moment */
     const rx90_real_t t80 = t50 - parameters[XZ6] * t55 - parameters[YZ6] * (t56 - t57)
         - (parameters[MY6] * t76 + parameters[MZ6] * t79);
     const rx90_real_t t81 = t44 - t43;
     const rx90_real_t t82 = parameters[YY6] * t48 - t47 * (parameters[XX6] - parameters[ZZ6])
         + parameters[XY6] * t81;
     const rx90_real_t t83 = t54 - t53;
-    const rx90_real_t t84 = t46 * t46;
+    const rx90_real_t t84 = t46 * t46; /* link j6: motion */
     const rx90_real_t t85 = t25 * t78 - t39 * t77;
+    /* link j6: force and moment */
     const rx90_real_t t86 = t82 + parameters[YZ6] * t83 + parameters[XZ6] * (t84 - t57)
         + (parameters[MZ6] * t85 + parameters[MX6] * t76);
-    const rx90_real_t t87 = t52 + t53;
+    const rx90_real_t t87 = t52 + t53; /* link j6: motion */
+    /* link j5: force and moment */
     const rx90_real_t t88 = parameters[XY5] * t87 - (parameters[XX5] * t37 + t36 * (parameters[ZZ5]
         - parameters[YY5]));
-    const rx90_real_t t89 = t18 + t23;
-    const rx90_real_t t90 = t22 * t22;
+    const rx90_real_t t89 = t18 + t23; /* link j6: motion */
+    const rx90_real_t t90 = t22 * t22; /* link j5: motion */
     const rx90_real_t t91 = t35 * t35;
+    /* link j5: force and moment */
     const rx90_real_t t92 = t88 + parameters[XZ5] * t89 + parameters[YZ5] * (t90 - t91)
         + (parameters[MY5] * t78 - parameters[MZ5] * t76);
-    const rx90_real_t t93 = t92 + (t25 * t86 - t39 * t80);
+    const rx90_real_t t93 = t92 + (t25 * t86 - t39 * t80); /* link j6: what it passes on */
+    /* link j6: force and moment */
     const rx90_real_t t94 = parameters[ZZ6] * t53 - (parameters[XX6] - parameters[YY6]) * t54
         - parameters[YZ6] * t45;
     const rx90_real_t t95 = t94 - parameters[XZ6] * t40 + parameters[XY6] * (t84 - t56)
         + (parameters[MY6] * t85 - parameters[MX6] * t79);
+    /* link j5: force and moment */
     const rx90_real_t t96 = parameters[YY5] * t53 + t52 * (parameters[ZZ5] - parameters[XX5])
         - parameters[XY5] * t38;
-    const rx90_real_t t97 = t21 * t21;
+    const rx90_real_t t97 = t21 * t21; /* link j5: motion */
+    /* link j5: force and moment */
     const rx90_real_t t98 = t96 + parameters[YZ5] * t24 + parameters[XZ5] * (t91 - t97)
         + (parameters[MZ5] * t77 - parameters[MX5] * t78);
-    const rx90_real_t t99 = t98 + t95;
-    const rx90_real_t t100 = t18 - t17;
+    const rx90_real_t t99 = t98 + t95; /* link j6: what it passes on */
+    const rx90_real_t t100 = t18 - t17; /* link j5: motion */
+    /* link j4: force and moment */
     const rx90_real_t t101 = parameters[XX4] * t29 + t28 * (parameters[YY4] - parameters[ZZ4])
         + parameters[XY4] * t100;
-    const rx90_real_t t102 = t32 + t31;
-    const rx90_real_t t103 = t27 * t27;
+    const rx90_real_t t102 = t32 + t31; /* link j5: motion */
+    const rx90_real_t t103 = t27 * t27; /* link j4: motion */
     const rx90_real_t t104 = t16 * t16;
+    /* link j4: force and moment */
     const rx90_real_t t105 = t101 + parameters[XZ4] * t102 - parameters[YZ4] * (t103 - t104)
         - (parameters[MY4] * t75 + parameters[MZ4] * t78);
-    const rx90_real_t t106 = t105 + (t20 * t99 - t19 * t93);
+    const rx90_real_t t106 = t105 + (t20 * t99 - t19 * t93); /* link j5: what it passes on */
+    /* link j5: force and moment */
     const rx90_real_t t107 = parameters[ZZ5] * t18 - t23 * (parameters[XX5] - parameters[YY5])
         + parameters[YZ5] * t51;
     const rx90_real_t t108 = t107 - parameters[XZ5] * t34 + parameters[XY5] * (t97 - t90)
         + (parameters[MX5] * t76 - parameters[MY5] * t77);
-    const rx90_real_t t109 = t108 + (t25 * t80 + t39 * t86);
+    const rx90_real_t t109 = t108 + (t25 * t80 + t39 * t86); /* link j6: what it passes on */
+    /* link j4: force and moment */
     const rx90_real_t t110 = parameters[YY4] * t18 + t17 * (parameters[XX4] - parameters[ZZ4])
         + parameters[XY4] * t30;
-    const rx90_real_t t111 = t15 * t15;
+    const rx90_real_t t111 = t15 * t15; /* link j4: motion */
+    /* link j4: force and moment */
     const rx90_real_t t112 = t110 + parameters[YZ4] * t33 + parameters[XZ4] * (t111 - t104)
         + (parameters[MZ4] * t70 + parameters[MX4] * t75);
-    const rx90_real_t t113 = t112 + t109;
+    const rx90_real_t t113 = t112 + t109; /* link j5: what it passes on */
+    /* link j6: force and moment */
     const rx90_real_t t114 = parameters[MY6] * t83 - parameters[MX6] * (t56 + t57) - parameters[MZ6] * t45;
     const rx90_real_t t115 = t114 - parameters[M6] * t85;
     const rx90_real_t t116 = parameters[MY6] * (t84 + t57) - parameters[MX6] * t55 - parameters[MZ6] * t40;
     const rx90_real_t t117 = parameters[M6] * t79 + t116;
+    /* link j5: force and moment */
     const rx90_real_t t118 = parameters[MZ5] * t51 - (parameters[MX5] * (t90 + t91) + parameters[MY5] * t24);
+    /* link j6: what it passes on */
     const rx90_real_t t119 = parameters[M5] * t77 + t118 + (t39 * t115 + t25 * t117);
+    /* link j5: force and moment */
     const rx90_real_t t120 = parameters[MX5] * t89 - parameters[MY5] * (t97 + t91) + parameters[MZ5] * t34;
+    /* link j6: force and moment */
     const rx90_real_t t121 = parameters[MY6] * t81 - parameters[MX6] * t49 + parameters[MZ6] * (t84 + t56);
+    /* link j6: what it passes on */
     const rx90_real_t t122 = t121 - parameters[M6] * t76 - (parameters[M5] * t76 + t120);
+    /* link j4: force and moment */
     const rx90_real_t t123 = parameters[MY4] * t33 - parameters[MX4] * (t103 + t104) - parameters[MZ4] * t14;
+    /* link j5: what it passes on */
     const rx90_real_t t124 = t123 - parameters[M4] * t70 + (t19 * t119 + t20 * t122);
+    /* link j5: force and moment */
     const rx90_real_t t125 = parameters[MX5] * t87 + parameters[MY5] * t38 + parameters[MZ5] * (t97 + t90);
+    /* link j6: what it passes on */
     const rx90_real_t t126 = parameters[M5] * t78 - t125 - (t25 * t115 - t39 * t117);
+    /* link j4: force and moment */
     const rx90_real_t t127 = parameters[MX4] * t102 + parameters[MY4] * (t111 + t104) - parameters[MZ4] * t26;
-    const rx90_real_t t128 = parameters[M4] * t78 + t127 + t126;
-    const rx90_real_t t129 = t13 * t124 - t9 * t128;
-    const rx90_real_t t130 = RX90_C(-2.0) * t32;
+    const rx90_real_t t128 = parameters[M4] * t78 + t127 + t126; /* link j5: what it passes on */
+    const rx90_real_t t129 = t13 * t124 - t9 * t128; /* link j4: what it passes on */
+    const rx90_real_t t130 = RX90_C(-2.0) * t32; /* link j4: motion */
+    /* link j3: force and moment */
     const rx90_real_t t131 = t11 * (parameters[YY3] - parameters[ZZ3]) - parameters[XX3] * t11
         + parameters[XY3] * t130;
-    const rx90_real_t t132 = t7 * t7;
+    const rx90_real_t t132 = t7 * t7; /* link j3: motion */
+    /* link j3: force and moment */
     const rx90_real_t t133 = t131 - parameters[XZ3] * t8 + parameters[YZ3] * (t132 - t73)
         + (parameters[MY3] * t68 - parameters[MZ3] * t71);
+    /* link j4: what it passes on */
     const rx90_real_t t134 = t133 + (t13 * t113 - t9 * t106 + RX90_C(-0.45) * t129);
+    /* link j4: force and moment */
     const rx90_real_t t135 = parameters[ZZ4] * t32 + t31 * (parameters[YY4] - parameters[XX4])
         + parameters[YZ4] * t14;
     const rx90_real_t t136 = parameters[XY4] * (t111 - t103) - (t135 + parameters[XZ4] * t26)
         + (parameters[MY4] * t70 - parameters[MX4] * t78);
-    const rx90_real_t t137 = t136 + (t20 * t93 + t19 * t99);
+    const rx90_real_t t137 = t136 + (t20 * t93 + t19 * t99); /* link j5: what it passes on */
+    /* link j3: force and moment */
     const rx90_real_t t138 = parameters[YY3] * t32 - t32 * (parameters[XX3] - parameters[ZZ3])
         + parameters[XY3] * t12;
     const rx90_real_t t139 = t138 - parameters[YZ3] * t8 - parameters[XZ3] * (t73 - t72)
         + (parameters[MZ3] * t65 + parameters[MX3] * t68);
-    const rx90_real_t t140 = t139 - t137;
-    const rx90_real_t t141 = dq[1] * t4;
+    const rx90_real_t t140 = t139 - t137; /* link j4: what it passes on */
+    const rx90_real_t t141 = dq[1] * t4; /* link j2: motion */
+    /* link j2: force and moment */
     const rx90_real_t t142 = t141 * parameters[XX2] + t141 * (parameters[ZZ2] - parameters[YY2])
         + RX90_C(-2.0) * t67 * parameters[XY2];
     const rx90_real_t t143 = t142 + t62 * parameters[XZ2] + (t58 - t59) * parameters[YZ2]
         - t63 * parameters[MZ2];
+    /* link j3: force and moment */
     const rx90_real_t t144 = parameters[MX3] * t130 + parameters[MY3] * t12 + parameters[MZ3] * (t72 + t132);
+    /* link j3: what it passes on */
     const rx90_real_t t145 = t5 * t134 - t2 * t140 + RX90_C(0.45) * (t144 - parameters[M3] * t68 + t129);
+    /* link j2: force and moment */
     const rx90_real_t t146 = t67 * (parameters[XX2] - parameters[ZZ2]) - t67 * parameters[YY2]
         + RX90_C(2.0) * t141 * parameters[XY2];
-    const rx90_real_t t147 = t1 * t1;
+    const rx90_real_t t147 = t1 * t1; /* link j2: motion */
+    /* link j2: force and moment */
     const rx90_real_t t148 = t146 - t62 * parameters[YZ2] + (t59 - t147) * parameters[XZ2]
         - t60 * parameters[MZ2];
+    /* link j2: what it passes on */
     const rx90_real_t t149 = t0 * (t143 + (t2 * t134 + t5 * t140)) + t3 * (t148 + t145);
-    const rx90_real_t t150 = rx90_sign(dq[0]);
+    const rx90_real_t t150 = rx90_sign(dq[0]); /* joint j1: coulomb_friction */
     const rx90_real_t t151 = RX90_C(3.3333333333333335) * (RX90_C(1.0e2) * dq[0] * parameters[FV1]
         + t150 * parameters[FC1]) + RX90_C(0.03333333333333333) * t149;
     out[0] = t151;
-    const rx90_real_t t152 = t9 * t124 + t13 * t128;
+    const rx90_real_t t152 = t9 * t124 + t13 * t128; /* link j4: what it passes on */
+    /* link j3: force and moment */
     const rx90_real_t t153 = t8 * (parameters[XX3] - parameters[YY3]) + parameters[XY3] * (t72 - t132)
         + (parameters[MX3] * t71 + parameters[MY3] * t65);
+    /* link j4: what it passes on */
     const rx90_real_t t154 = t153 + (t13 * t106 + t9 * t113 + RX90_C(-0.45) * t152);
+    /* link j3: force and moment */
     const rx90_real_t t155 = parameters[M3] * t65 + (parameters[MX3] * (t73 + t132) + parameters[MY3] * t8);
+    /* link j4: force and moment */
     const rx90_real_t t156 = parameters[MX4] * t100 - parameters[MY4] * t30 - parameters[MZ4] * (t111 + t103);
+    /* link j5: what it passes on */
     const rx90_real_t t157 = parameters[M4] * t75 + t156 + (t20 * t119 - t19 * t122);
+    /* link j4: what it passes on */
     const rx90_real_t t158 = parameters[M3] * t71 - (parameters[MX3] * t8 + parameters[MY3] * t74) + t157;
+    /* link j3: what it passes on */
     const rx90_real_t t159 = t154 + RX90_C(0.45) * (t5 * (t152 - t155) + t2 * t158);
+    /* link j2: force and moment */
     const rx90_real_t t160 = t62 * (parameters[YY2] - parameters[XX2]) + (t147 - t58) * parameters[XY2]
         + (t63 * parameters[MX2] + t60 * parameters[MY2]);
-    const rx90_real_t t161 = rx90_sign(dq[1]);
+    const rx90_real_t t161 = rx90_sign(dq[1]); /* joint j2: coulomb_friction */
     const rx90_real_t t162 = RX90_C(3.3333333333333335) * (RX90_C(1.0e2) * dq[1] * parameters[FV2]
         + t161 * parameters[FC2]) + RX90_C(0.03333333333333333) * (t160 + t159);
     out[1] = t162;
-    const rx90_real_t t163 = rx90_sign(dq[2]);
+    const rx90_real_t t163 = rx90_sign(dq[2]); /* joint j3: coulomb_friction */
     const rx90_real_t t164 = RX90_C(3.3333333333333335) * (RX90_C(1.0e2) * dq[2] * parameters[FV3]
         + t163 * parameters[FC3]) + RX90_C(0.03333333333333333) * t154;
     out[2] = t164;
-    const rx90_real_t t165 = rx90_sign(dq[3]);
+    const rx90_real_t t165 = rx90_sign(dq[3]); /* joint j4: coulomb_friction */
     const rx90_real_t t166 = RX90_C(5.0) * (RX90_C(50.0) * dq[3] * parameters[FV4] + t165 * parameters[FC4])
         + RX90_C(0.1) * t137;
     out[3] = t166;
-    const rx90_real_t t167 = rx90_sign(dq[4]);
+    const rx90_real_t t167 = rx90_sign(dq[4]); /* joint j5: coulomb_friction */
     const rx90_real_t t168 = RX90_C(5.0) * (RX90_C(50.0) * dq[4] * parameters[FV5] + t167 * parameters[FC5])
         + RX90_C(0.1) * t109;
     out[4] = t168;
-    const rx90_real_t t169 = rx90_sign(dq[5]);
+    const rx90_real_t t169 = rx90_sign(dq[5]); /* joint j6: coulomb_friction */
     const rx90_real_t t170 = RX90_C(5.0) * (RX90_C(30.0) * dq[5] * parameters[FV6] + t169 * parameters[FC6])
         + RX90_C(0.16666666666666666) * t95;
     out[5] = t170;

@@ -8,16 +8,16 @@
  */
 #include "rx90_private.h"
 
-#if RX90_GENERATION != 0xD1F0D18FUL
+#if RX90_GENERATION != 0x88006983UL
 #error "rx90.h and rx90_check_parameters.c are of different generations: generate the arm again"
 #endif
 
-int rx90_check_parameters(const rx90_real_t parameters[RX90_N_PARAMETERS])
+rx90_status_t rx90_check_parameters(const rx90_real_t parameters[RX90_N_PARAMETERS])
 {
     return rx90_within(parameters, 52, RX90_C(1.0e18)) ? RX90_STATUS_OK : RX90_STATUS_INPUT;
 }
 
-int rx90_check_parameters_standard(const rx90_real_t parameters[RX90_N_STANDARD_PARAMETERS])
+rx90_status_t rx90_check_parameters_standard(const rx90_real_t parameters[RX90_N_STANDARD_PARAMETERS])
 {
     return rx90_within(parameters, 78, RX90_C(1.0e18)) ? RX90_STATUS_OK : RX90_STATUS_INPUT;
 }

@@ -8,8 +8,8 @@
  *
  * Operations: 0 (0 mul, 0 add, 0 neg).
  *
- * @param[in]   q    [6]  [rad]            joint coordinates; norm at most 10000
- * @param[out]  out  [6]  [(N m) per (A)]  drive gains K
+ * @param[in]   q    [6]  [rad]        joint coordinates; norm at most 10000
+ * @param[out]  out  [6]  [N m per A]  drive gains K
  *
  * Coordinates:
  *
@@ -22,15 +22,15 @@
  */
 #include "rx90_private.h"
 
-#if RX90_GENERATION != 0xD1F0D18FUL
+#if RX90_GENERATION != 0x88006983UL
 #error "rx90.h and rx90_drive_gain.c are of different generations: generate the arm again"
 #endif
 
-int rx90_drive_gain(
+rx90_status_t rx90_drive_gain(
     const rx90_real_t q[RX90_N_JOINTS],
     rx90_real_t out[RX90_N_JOINTS])
 {
-    int status = RX90_STATUS_OK;
+    rx90_status_t status = RX90_STATUS_OK;
 
     if (!rx90_within_joints(q, RX90_C(1.0e8))) {
         status |= RX90_STATUS_INPUT;

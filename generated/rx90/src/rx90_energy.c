@@ -80,11 +80,11 @@
  */
 #include "rx90_private.h"
 
-#if RX90_GENERATION != 0xD1F0D18FUL
+#if RX90_GENERATION != 0x88006983UL
 #error "rx90.h and rx90_energy.c are of different generations: generate the arm again"
 #endif
 
-int rx90_energy(
+rx90_status_t rx90_energy(
     const rx90_real_t q[RX90_N_JOINTS],
     const rx90_real_t dq[RX90_N_JOINTS],
     const rx90_real_t parameters[RX90_N_PARAMETERS],
@@ -94,7 +94,7 @@ int rx90_energy(
     enum { ZZ1R = 0, XX2R, XY2, XZ2R, YZ2, ZZ2R, MX2R, MY2, XX3R, XY3, XZ3, YZ3, ZZ3R, MX3, MY3R, XX4R, XY4,
         XZ4, YZ4, ZZ4R, MX4, MY4R, XX5R, XY5, XZ5, YZ5, ZZ5R, MX5, MY5R, XX6R, XY6, XZ6, YZ6, ZZ6, MX6, MY6,
         FV1, FC1, FV2, FC2, FV3, FC3, IA3, FV4, FC4, IA4, FV5, FC5, IA5, FV6, FC6, IA6 };
-    int status = RX90_STATUS_OK;
+    rx90_status_t status = RX90_STATUS_OK;
 
     if (!rx90_within_joints(q, RX90_C(1.0e8))
         || !rx90_within_joints(dq, RX90_C(1.0e10))
@@ -117,9 +117,9 @@ int rx90_energy(
     RX90_SINCOS(q[4], &t35, &t34);
     rx90_real_t t47, t46;
     RX90_SINCOS(q[5], &t47, &t46);
-    const rx90_real_t t1 = t0 * dq[0];
+    const rx90_real_t t1 = t0 * dq[0]; /* link j2: motion */
     const rx90_real_t t4 = t3 * dq[0];
-    const rx90_real_t t6 = t2 * t1 + t5 * t4;
+    const rx90_real_t t6 = t2 * t1 + t5 * t4; /* link j3: motion */
     const rx90_real_t t7 = t2 * t4 - t5 * t1;
     const rx90_real_t t8 = dq[1] + dq[2];
     const rx90_real_t t9 = t6 * (parameters[XX3R] * t6 + parameters[XY3] * t7 + parameters[XZ3] * t8);
@@ -130,36 +130,36 @@ int rx90_energy(
     const rx90_real_t t14 = t12 + t4 * (parameters[XY2] * t1 + parameters[YZ2] * dq[1]) + t13;
     const rx90_real_t t15 = RX90_C(0.5) * (dq[0] * (parameters[ZZ1R] * dq[0])) + RX90_C(0.5) * t14
         + RX90_C(0.5) * t11;
-    const rx90_real_t t16 = RX90_C(0.45) * dq[1];
+    const rx90_real_t t16 = RX90_C(0.45) * dq[1]; /* link j3: velocity of its origin */
     const rx90_real_t t17 = t2 * t16;
     const rx90_real_t t18 = RX90_C(-0.45) * t4;
     const rx90_real_t t19 = t5 * t16;
     const rx90_real_t t20 = parameters[MX3] * (t8 * t17 - t7 * t18) + parameters[MY3R] * (t6 * t18
         - t8 * t19);
-    const rx90_real_t t23 = t21 * t6 - t22 * t8;
+    const rx90_real_t t23 = t21 * t6 - t22 * t8; /* link j4: motion */
     const rx90_real_t t24 = t22 * t6 + t21 * t8;
     const rx90_real_t t25 = dq[3] + t7;
     const rx90_real_t t26 = t23 * (parameters[XX4R] * t23 - parameters[XY4] * t24 + parameters[XZ4] * t25);
     const rx90_real_t t27 = t25 * (parameters[XZ4] * t23 - parameters[YZ4] * t24 + parameters[ZZ4R] * t25);
     const rx90_real_t t28 = t26 - t24 * (parameters[XY4] * t23 + parameters[YZ4] * t25) + t27;
-    const rx90_real_t t29 = t19 - RX90_C(0.45) * t8;
+    const rx90_real_t t29 = t19 - RX90_C(0.45) * t8; /* link j4: velocity of its origin */
     const rx90_real_t t30 = t18 + RX90_C(0.45) * t6;
     const rx90_real_t t31 = t22 * t29 + t21 * t30;
     const rx90_real_t t32 = t22 * t30 - t21 * t29;
     const rx90_real_t t33 = parameters[MX4] * (t24 * t17 - t25 * t31) + parameters[MY4R] * (t23 * t17
         + t25 * t32);
-    const rx90_real_t t36 = t34 * t23 + t35 * t25;
+    const rx90_real_t t36 = t34 * t23 + t35 * t25; /* link j5: motion */
     const rx90_real_t t37 = t34 * t25 - t35 * t23;
     const rx90_real_t t38 = dq[4] + t24;
     const rx90_real_t t39 = t36 * (parameters[XX5R] * t36 + parameters[XY5] * t37 + parameters[XZ5] * t38);
     const rx90_real_t t40 = t38 * (parameters[XZ5] * t36 + parameters[YZ5] * t37 + parameters[ZZ5R] * t38);
     const rx90_real_t t41 = t39 + t37 * (parameters[XY5] * t36 + parameters[YZ5] * t38) + t40;
     const rx90_real_t t42 = t15 + t20 + RX90_C(0.5) * t28 + t33 + RX90_C(0.5) * t41;
-    const rx90_real_t t43 = t35 * t32 + t34 * t17;
+    const rx90_real_t t43 = t35 * t32 + t34 * t17; /* link j5: velocity of its origin */
     const rx90_real_t t44 = t34 * t32 - t35 * t17;
     const rx90_real_t t45 = parameters[MX5] * (t38 * t43 - t37 * t31) + parameters[MY5R] * (t36 * t31
         + t38 * t44);
-    const rx90_real_t t48 = t46 * t36 - t47 * t38;
+    const rx90_real_t t48 = t46 * t36 - t47 * t38; /* link j6: motion */
     const rx90_real_t t49 = t47 * t36 + t46 * t38;
     const rx90_real_t t50 = dq[5] + t37;
     const rx90_real_t t51 = t48 * (parameters[XX6R] * t48 - parameters[XY6] * t49 + parameters[XZ6] * t50);
@@ -173,15 +173,15 @@ int rx90_energy(
     const rx90_real_t t58 = t57 + RX90_C(0.5) * (RX90_C(2.5e3) * parameters[IA5] * (dq[4] * dq[4]))
         + RX90_C(0.5) * (RX90_C(9.0e2) * parameters[IA6] * (dq[5] * dq[5]));
     kinetic[0] = t58;
-    const rx90_real_t t59 = RX90_C(9.81) * t0;
+    const rx90_real_t t59 = RX90_C(9.81) * t0; /* link j2: motion */
     const rx90_real_t t60 = RX90_C(9.81) * t3;
-    const rx90_real_t t61 = t2 * t59 + t5 * t60;
+    const rx90_real_t t61 = t2 * t59 + t5 * t60; /* link j3: motion */
     const rx90_real_t t62 = t2 * t60 - t5 * t59;
     const rx90_real_t t63 = parameters[MX2R] * t59 + parameters[MY2] * t60 + (parameters[MX3] * t61
         + parameters[MY3R] * t62);
-    const rx90_real_t t64 = t21 * t61;
+    const rx90_real_t t64 = t21 * t61; /* link j4: motion */
     const rx90_real_t t65 = t22 * t61;
-    const rx90_real_t t66 = t34 * t64 + t35 * t62;
+    const rx90_real_t t66 = t34 * t64 + t35 * t62; /* link j5: motion */
     const rx90_real_t t67 = parameters[MX5] * t66 + parameters[MY5R] * (t34 * t62 - t35 * t64);
     const rx90_real_t t68 = parameters[MX6] * (t46 * t66 - t47 * t65) - parameters[MY6] * (t47 * t66
         + t46 * t65);

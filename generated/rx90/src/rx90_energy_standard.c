@@ -106,11 +106,11 @@
  */
 #include "rx90_private.h"
 
-#if RX90_GENERATION != 0xD1F0D18FUL
+#if RX90_GENERATION != 0x88006983UL
 #error "rx90.h and rx90_energy_standard.c are of different generations: generate the arm again"
 #endif
 
-int rx90_energy_standard(
+rx90_status_t rx90_energy_standard(
     const rx90_real_t q[RX90_N_JOINTS],
     const rx90_real_t dq[RX90_N_JOINTS],
     const rx90_real_t parameters[RX90_N_STANDARD_PARAMETERS],
@@ -121,7 +121,7 @@ int rx90_energy_standard(
         M2, XX3, XY3, XZ3, YY3, YZ3, ZZ3, MX3, MY3, MZ3, M3, XX4, XY4, XZ4, YY4, YZ4, ZZ4, MX4, MY4, MZ4, M4,
         XX5, XY5, XZ5, YY5, YZ5, ZZ5, MX5, MY5, MZ5, M5, XX6, XY6, XZ6, YY6, YZ6, ZZ6, MX6, MY6, MZ6, M6, FV1,
         FC1, IA1, FV2, FC2, IA2, FV3, FC3, IA3, FV4, FC4, IA4, FV5, FC5, IA5, FV6, FC6, IA6 };
-    int status = RX90_STATUS_OK;
+    rx90_status_t status = RX90_STATUS_OK;
 
     if (!rx90_within_joints(q, RX90_C(1.0e8))
         || !rx90_within_joints(dq, RX90_C(1.0e10))
@@ -144,15 +144,15 @@ int rx90_energy_standard(
     RX90_SINCOS(q[4], &t41, &t40);
     rx90_real_t t55, t54;
     RX90_SINCOS(q[5], &t55, &t54);
-    const rx90_real_t t1 = t0 * dq[0];
+    const rx90_real_t t1 = t0 * dq[0]; /* link j2: motion */
     const rx90_real_t t4 = t3 * dq[0];
-    const rx90_real_t t6 = t2 * t1 + t5 * t4;
+    const rx90_real_t t6 = t2 * t1 + t5 * t4; /* link j3: motion */
     const rx90_real_t t7 = t2 * t4 - t5 * t1;
     const rx90_real_t t8 = dq[1] + dq[2];
     const rx90_real_t t9 = t6 * (parameters[XX3] * t6 + parameters[XY3] * t7 + t8 * parameters[XZ3]);
     const rx90_real_t t10 = t7 * (parameters[XY3] * t6 + parameters[YY3] * t7 + t8 * parameters[YZ3]);
     const rx90_real_t t11 = t8 * (parameters[XZ3] * t6 + parameters[YZ3] * t7 + t8 * parameters[ZZ3]);
-    const rx90_real_t t12 = RX90_C(0.45) * dq[1];
+    const rx90_real_t t12 = RX90_C(0.45) * dq[1]; /* link j3: velocity of its origin */
     const rx90_real_t t13 = t5 * t12;
     const rx90_real_t t14 = t2 * t12;
     const rx90_real_t t15 = t14 * t14;
@@ -165,12 +165,12 @@ int rx90_energy_standard(
         + t20);
     const rx90_real_t t22 = parameters[MX3] * (t8 * t14 + t7 * t16) - parameters[MY3] * (t6 * t16 + t8 * t13);
     const rx90_real_t t23 = t21 + RX90_C(0.5) * t17 + (t22 + parameters[MZ3] * (t7 * t13 - t6 * t14));
-    const rx90_real_t t24 = t13 - RX90_C(0.45) * t8;
+    const rx90_real_t t24 = t13 - RX90_C(0.45) * t8; /* link j4: velocity of its origin */
     const rx90_real_t t26 = t16 + RX90_C(-0.45) * t6;
     const rx90_real_t t28 = t25 * t24 + t27 * t26;
     const rx90_real_t t29 = t25 * t26 - t27 * t24;
     const rx90_real_t t30 = t29 * t29;
-    const rx90_real_t t31 = t25 * t6 - t27 * t8;
+    const rx90_real_t t31 = t25 * t6 - t27 * t8; /* link j4: motion */
     const rx90_real_t t32 = t25 * t8 + t27 * t6;
     const rx90_real_t t33 = dq[3] + t7;
     const rx90_real_t t34 = t31 * (parameters[XY4] * t32 - parameters[XX4] * t31 - parameters[XZ4] * t33);
@@ -180,22 +180,22 @@ int rx90_energy_standard(
     const rx90_real_t t38 = parameters[MX4] * (t33 * t29 + t32 * t14) + parameters[MY4] * (t31 * t14
         - t33 * t28);
     const rx90_real_t t39 = t23 + RX90_C(0.5) * t37 + (t38 - parameters[MZ4] * (t32 * t28 + t31 * t29));
-    const rx90_real_t t42 = t40 * t31 + t41 * t33;
+    const rx90_real_t t42 = t40 * t31 + t41 * t33; /* link j5: motion */
     const rx90_real_t t43 = t41 * t31 - t40 * t33;
     const rx90_real_t t44 = dq[4] + t32;
     const rx90_real_t t45 = t42 * (parameters[XY5] * t43 - parameters[XX5] * t42 - parameters[XZ5] * t44);
     const rx90_real_t t46 = t43 * (parameters[XY5] * t42 - parameters[YY5] * t43 + parameters[YZ5] * t44);
     const rx90_real_t t47 = t44 * (parameters[XZ5] * t42 - parameters[YZ5] * t43 + parameters[ZZ5] * t44);
-    const rx90_real_t t48 = t40 * t28 + t41 * t14;
+    const rx90_real_t t48 = t40 * t28 + t41 * t14; /* link j5: velocity of its origin */
     const rx90_real_t t49 = t41 * t28 - t40 * t14;
     const rx90_real_t t50 = t49 * t49;
     const rx90_real_t t51 = t47 - (t45 + t46) + parameters[M5] * (t30 + (t48 * t48 + t50));
     const rx90_real_t t52 = parameters[MX5] * (t44 * t49 + t43 * t29) + parameters[MY5] * (t42 * t29
         + t44 * t48);
     const rx90_real_t t53 = t39 + RX90_C(0.5) * t51 + (parameters[MZ5] * (t42 * t49 - t43 * t48) - t52);
-    const rx90_real_t t56 = t54 * t48 + t55 * t29;
+    const rx90_real_t t56 = t54 * t48 + t55 * t29; /* link j6: velocity of its origin */
     const rx90_real_t t57 = t55 * t48 - t54 * t29;
-    const rx90_real_t t58 = t55 * t44 - t54 * t42;
+    const rx90_real_t t58 = t55 * t44 - t54 * t42; /* link j6: motion */
     const rx90_real_t t59 = t55 * t42 + t54 * t44;
     const rx90_real_t t60 = t43 - dq[5];
     const rx90_real_t t61 = t58 * (parameters[XX6] * t58 + parameters[XY6] * t59 + parameters[XZ6] * t60);
@@ -212,19 +212,19 @@ int rx90_energy_standard(
     const rx90_real_t t69 = t68 + RX90_C(0.5) * (dq[4] * dq[4] * (RX90_C(2.5e3) * parameters[IA5]))
         + RX90_C(0.5) * (dq[5] * dq[5] * (RX90_C(9.0e2) * parameters[IA6]));
     kinetic[0] = t69;
-    const rx90_real_t t70 = RX90_C(9.81) * t0;
+    const rx90_real_t t70 = RX90_C(9.81) * t0; /* link j2: motion */
     const rx90_real_t t71 = RX90_C(9.81) * t3;
-    const rx90_real_t t72 = t2 * t70 + t5 * t71;
+    const rx90_real_t t72 = t2 * t70 + t5 * t71; /* link j3: motion */
     const rx90_real_t t73 = t2 * t71 - t5 * t70;
     const rx90_real_t t74 = RX90_C(4.4145) * t0;
     const rx90_real_t t75 = RX90_C(9.81) * parameters[MZ1] + (t70 * parameters[MX2] + t71 * parameters[MY2])
         + (t72 * parameters[MX3] + t73 * parameters[MY3] + parameters[M3] * t74);
-    const rx90_real_t t76 = t25 * t72;
+    const rx90_real_t t76 = t25 * t72; /* link j4: motion */
     const rx90_real_t t77 = t27 * t72;
     const rx90_real_t t78 = t74 + RX90_C(0.45) * t73;
     const rx90_real_t t79 = t76 * parameters[MX4] - t77 * parameters[MY4] + t73 * parameters[MZ4]
         + parameters[M4] * t78;
-    const rx90_real_t t80 = t40 * t76 + t41 * t73;
+    const rx90_real_t t80 = t40 * t76 + t41 * t73; /* link j5: motion */
     const rx90_real_t t81 = t40 * t73 - t41 * t76;
     const rx90_real_t t82 = t80 * parameters[MX5] + t81 * parameters[MY5] + t77 * parameters[MZ5]
         + parameters[M5] * t78;

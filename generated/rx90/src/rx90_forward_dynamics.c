@@ -6,7 +6,7 @@
  * Arm rx90, description 10f0505273a073e2.
  * SPDX-License-Identifier: 0BSD
  *
- * Operations: 864 (471 mul, 393 add, 0 neg), 6 div, 10 trig, 6 other.
+ * Operations: 864 (471 mul, 393 add, 0 neg), 6 div, 10 trig, 6 other calls (sign, select and the like).
  *
  * @param[in]   q           [6]   [rad]      joint coordinates; norm at most 10000
  * @param[in]   dq          [6]   [rad/s]    joint velocities; norm at most 100000
@@ -81,11 +81,11 @@
  */
 #include "rx90_private.h"
 
-#if RX90_GENERATION != 0xD1F0D18FUL
+#if RX90_GENERATION != 0x88006983UL
 #error "rx90.h and rx90_forward_dynamics.c are of different generations: generate the arm again"
 #endif
 
-int rx90_forward_dynamics(
+rx90_status_t rx90_forward_dynamics(
     const rx90_real_t q[RX90_N_JOINTS],
     const rx90_real_t dq[RX90_N_JOINTS],
     const rx90_real_t input[RX90_N_JOINTS],
@@ -95,7 +95,7 @@ int rx90_forward_dynamics(
     enum { ZZ1R = 0, XX2R, XY2, XZ2R, YZ2, ZZ2R, MX2R, MY2, XX3R, XY3, XZ3, YZ3, ZZ3R, MX3, MY3R, XX4R, XY4,
         XZ4, YZ4, ZZ4R, MX4, MY4R, XX5R, XY5, XZ5, YZ5, ZZ5R, MX5, MY5R, XX6R, XY6, XZ6, YZ6, ZZ6, MX6, MY6,
         FV1, FC1, FV2, FC2, FV3, FC3, IA3, FV4, FC4, IA4, FV5, FC5, IA5, FV6, FC6, IA6 };
-    int status = RX90_STATUS_OK;
+    rx90_status_t status = RX90_STATUS_OK;
 
     if (!rx90_within_joints(q, RX90_C(1.0e8))
         || !rx90_within_joints(dq, RX90_C(1.0e10))
@@ -123,9 +123,11 @@ int rx90_forward_dynamics(
         rx90_zero(out, 6);
         return RX90_STATUS_PIVOT;
     }
+    /* link j6: column of the mass matrix */
     const rx90_real_t t3 = t1 * parameters[XZ6] + t2 * parameters[YZ6];
     const rx90_real_t t4 = RX90_C(-1.0) / t0;
     const rx90_real_t t5 = t3 * t4;
+    /* link j6: inertia of it and all beyond */
     const rx90_real_t t6 = parameters[XY6] * (RX90_C(2.0) * t1) - t2 * parameters[XX6R];
     const rx90_real_t t7 = t2 * t6;
     const rx90_real_t t8 = parameters[ZZ5R] + (parameters[XX6R] + t7);
@@ -142,14 +144,16 @@ int rx90_forward_dynamics(
     }
     const rx90_real_t t12 = parameters[XZ5] - (parameters[XY6] - t1 * t6);
     const rx90_real_t t14 = parameters[YZ5] - t3;
-    const rx90_real_t t16 = t13 * t12 + t15 * t14;
+    const rx90_real_t t16 = t13 * t12 + t15 * t14; /* link j5: column of the mass matrix */
+    /* link j6: column of the mass matrix */
     const rx90_real_t t17 = t1 * parameters[YZ6] - t2 * parameters[XZ6];
     const rx90_real_t t18 = t15 * parameters[ZZ6] - t13 * t17;
     const rx90_real_t t19 = t16 - t18 * t5;
     const rx90_real_t t20 = RX90_C(1.0) / t10;
     const rx90_real_t t21 = t19 * t20;
-    const rx90_real_t t22 = parameters[XX5R] - t7;
+    const rx90_real_t t22 = parameters[XX5R] - t7; /* link j6: inertia of it and all beyond */
     const rx90_real_t t23 = t17 - parameters[XY5];
+    /* link j5: inertia of it and all beyond */
     const rx90_real_t t24 = t15 * (parameters[ZZ6] - t22) - t23 * (RX90_C(2.0) * t13);
     const rx90_real_t t25 = t15 * t24;
     const rx90_real_t t26 = parameters[ZZ4R] + (t22 + t25);
@@ -167,20 +171,22 @@ int rx90_forward_dynamics(
     }
     const rx90_real_t t31 = t23 + t13 * t24 - parameters[XZ4];
     const rx90_real_t t33 = t16 - parameters[YZ4];
+    /* link j6: column of the mass matrix */
     const rx90_real_t t35 = t2 * parameters[MY6] + t1 * parameters[MX6];
-    const rx90_real_t t36 = parameters[MY4R] + t35;
+    const rx90_real_t t36 = parameters[MY4R] + t35; /* link j5: inertia of it and all beyond */
+    /* link j6: column of the mass matrix */
     const rx90_real_t t37 = t1 * parameters[MY6] - t2 * parameters[MX6];
-    const rx90_real_t t38 = t37 - parameters[MX5];
-    const rx90_real_t t39 = t13 * parameters[MY5R] + t15 * t38;
-    const rx90_real_t t40 = t39 - parameters[MX4];
-    const rx90_real_t t41 = t32 * t40 - t34 * t36;
+    const rx90_real_t t38 = t37 - parameters[MX5]; /* link j6: inertia of it and all beyond */
+    const rx90_real_t t39 = t13 * parameters[MY5R] + t15 * t38; /* link j5: column of the mass matrix */
+    const rx90_real_t t40 = t39 - parameters[MX4]; /* link j5: inertia of it and all beyond */
+    const rx90_real_t t41 = t32 * t40 - t34 * t36; /* link j4: column of the mass matrix */
     const rx90_real_t t42 = RX90_C(-0.45) * t41;
     const rx90_real_t t43 = t32 * t31 + t34 * t33 + t42;
-    const rx90_real_t t44 = t15 * t17 + t13 * parameters[ZZ6];
+    const rx90_real_t t44 = t15 * t17 + t13 * parameters[ZZ6]; /* link j6: column of the mass matrix */
     const rx90_real_t t45 = t15 * t35;
     const rx90_real_t t46 = t34 * t45 - t32 * t37;
     const rx90_real_t t47 = t34 * t3 - t32 * t44 - RX90_C(0.45) * t46;
-    const rx90_real_t t48 = t13 * t14 - t15 * t12;
+    const rx90_real_t t48 = t13 * t14 - t15 * t12; /* link j5: column of the mass matrix */
     const rx90_real_t t49 = t13 * t38 - t15 * parameters[MY5R];
     const rx90_real_t t50 = t34 * t49;
     const rx90_real_t t51 = t32 * t48 + t34 * t8 + RX90_C(-0.45) * t50;
@@ -189,8 +195,10 @@ int rx90_forward_dynamics(
     const rx90_real_t t54 = RX90_C(-1.0) / t29;
     const rx90_real_t t55 = t53 * t54;
     const rx90_real_t t56 = t47 * t4;
+    /* link j5: inertia of it and all beyond */
     const rx90_real_t t57 = parameters[XX4R] + (parameters[ZZ6] - t25);
     const rx90_real_t t58 = parameters[XY4] + t48;
+    /* link j4: inertia of it and all beyond */
     const rx90_real_t t59 = t34 * (t57 - t8) + t58 * (RX90_C(-2.0) * t32);
     const rx90_real_t t60 = t34 * t59;
     const rx90_real_t t61 = RX90_C(-0.9) * t49;
@@ -207,13 +215,14 @@ int rx90_forward_dynamics(
         rx90_zero(out, 6);
         return RX90_STATUS_PIVOT;
     }
+    /* link j6: column of the mass matrix */
     const rx90_real_t t69 = t47 + RX90_C(0.45) * (t67 * t46 + t68 * (t13 * t35));
     const rx90_real_t t70 = RX90_C(0.45) * (t68 * t39 - t67 * t50) - t51 - t69 * t5;
     const rx90_real_t t71 = t43 + RX90_C(0.45) * (t67 * t41) - t69 * t28 + t70 * t21;
-    const rx90_real_t t72 = t32 * t36 + t34 * t40;
-    const rx90_real_t t73 = t72 - parameters[MX3];
+    const rx90_real_t t72 = t32 * t36 + t34 * t40; /* link j4: column of the mass matrix */
+    const rx90_real_t t73 = t72 - parameters[MX3]; /* link j4: inertia of it and all beyond */
     const rx90_real_t t74 = t49 - parameters[MY3R];
-    const rx90_real_t t75 = t68 * t73 - t67 * t74;
+    const rx90_real_t t75 = t68 * t73 - t67 * t74; /* link j3: column of the mass matrix */
     const rx90_real_t t76 = RX90_C(0.45) * t75 - t62 - t69 * t56 - t70 * t64;
     const rx90_real_t t77 = t76 - t71 * t55;
     const rx90_real_t t78 = RX90_C(1.0) / t65;
@@ -221,7 +230,7 @@ int rx90_forward_dynamics(
     const rx90_real_t t80 = t71 * t54;
     const rx90_real_t t81 = t70 * t20;
     const rx90_real_t t82 = t69 * t4;
-    const rx90_real_t t83 = RX90_C(-0.9) * t75;
+    const rx90_real_t t83 = RX90_C(-0.9) * t75; /* link j3: inertia of it and all beyond */
     const rx90_real_t t84 = parameters[ZZ2R] + (t62 + t83);
     const rx90_real_t t85 = t84 + t69 * t82 - t70 * t81 + t71 * t80;
     const rx90_real_t t86 = rx90_bounded(t85 - t77 * t79);
@@ -234,36 +243,40 @@ int rx90_forward_dynamics(
         rx90_zero(out, 6);
         return RX90_STATUS_PIVOT;
     }
-    const rx90_real_t t88 = parameters[XX3R] + (t8 + t60 + t61);
-    const rx90_real_t t89 = RX90_C(0.45) * t72;
+    const rx90_real_t t88 = parameters[XX3R] + (t8 + t60 + t61); /* link j4: inertia of it and all beyond */
+    const rx90_real_t t89 = RX90_C(0.45) * t72; /* link j4: column of the mass matrix */
     const rx90_real_t t90 = t32 * t33 - t34 * t31 + t89;
-    const rx90_real_t t91 = parameters[XY3] + t90;
+    const rx90_real_t t91 = parameters[XY3] + t90; /* link j4: inertia of it and all beyond */
+    /* link j3: inertia of it and all beyond */
     const rx90_real_t t92 = t68 * (t26 - t88) + t91 * (RX90_C(2.0) * t67);
     const rx90_real_t t93 = t68 * t92;
     const rx90_real_t t94 = parameters[XX2R] + (t26 - t93);
     const rx90_real_t t96 = t91 - t67 * t92 + RX90_C(0.45) * (t68 * t74 + t67 * t73);
+    /* link j2: inertia of it and all beyond */
     const rx90_real_t t98 = t95 * (t88 + t93 + t83 - t94) + (parameters[XY2] + t96) * (RX90_C(2.0) * t97);
     const rx90_real_t t99 = parameters[ZZ1R] + (t94 + t95 * t98);
-    const rx90_real_t t100 = RX90_C(0.45) * (t32 * t45 + t34 * t37);
+    const rx90_real_t t100 = RX90_C(0.45) * (t32 * t45 + t34 * t37); /* link j6: column of the mass matrix */
     const rx90_real_t t101 = t34 * t44 + t32 * t3 - t100;
     const rx90_real_t t102 = t97 * (t68 * t101 + t67 * t18) + t95 * (t100 + (t67 * t101 - t68 * t18));
     const rx90_real_t t103 = t102 * t4;
-    const rx90_real_t t104 = RX90_C(-0.45) * (t32 * t49);
+    const rx90_real_t t104 = RX90_C(-0.45) * (t32 * t49); /* link j5: column of the mass matrix */
     const rx90_real_t t105 = t34 * t48 - t32 * t8 - t104;
     const rx90_real_t t106 = t97 * (t68 * t105 + t67 * t16) + t95 * (t104 + (t67 * t105 - t68 * t16));
     const rx90_real_t t107 = t106 - t102 * t5;
     const rx90_real_t t108 = t107 * t20;
+    /* link j4: column of the mass matrix */
     const rx90_real_t t109 = t97 * (t67 * t26 - t68 * t90) + t95 * (t89 - (t67 * t90 + t68 * t26));
     const rx90_real_t t110 = t109 + t102 * t28 - t107 * t21;
     const rx90_real_t t111 = t110 * t54;
     const rx90_real_t t112 = t99 + t102 * t103 - t107 * t108 + t110 * t111;
-    const rx90_real_t t113 = t58 + t32 * t59 - parameters[XZ3];
+    const rx90_real_t t113 = t58 + t32 * t59 - parameters[XZ3]; /* link j4: inertia of it and all beyond */
     const rx90_real_t t114 = parameters[YZ3] + t43;
-    const rx90_real_t t115 = t68 * t113 + t67 * t114;
+    const rx90_real_t t115 = t68 * t113 + t67 * t114; /* link j3: column of the mass matrix */
     const rx90_real_t t116 = t67 * t113 - t68 * t114;
     const rx90_real_t t117 = t97 * t115 + t95 * t116 - t102 * t56 - t107 * t64;
     const rx90_real_t t118 = t117 + t110 * t55;
     const rx90_real_t t119 = t118 * t78;
+    /* link j2: column of the mass matrix */
     const rx90_real_t t120 = t97 * (t115 - t42 - parameters[XZ2R]) + t95 * (t116 - parameters[YZ2]);
     const rx90_real_t t121 = t120 - t102 * t82 + t107 * t81 + t110 * t80;
     const rx90_real_t t122 = t121 + t118 * t79;
@@ -279,36 +292,36 @@ int rx90_forward_dynamics(
         rx90_zero(out, 6);
         return RX90_STATUS_PIVOT;
     }
-    const rx90_real_t t127 = t97 * dq[0];
+    const rx90_real_t t127 = t97 * dq[0]; /* link j2: motion */
     const rx90_real_t t128 = t95 * dq[0];
-    const rx90_real_t t129 = t68 * t127 + t67 * t128;
+    const rx90_real_t t129 = t68 * t127 + t67 * t128; /* link j3: motion */
     const rx90_real_t t130 = t68 * t128 - t67 * t127;
     const rx90_real_t t131 = t129 * t130;
     const rx90_real_t t132 = dq[1] + dq[2];
     const rx90_real_t t133 = t130 * t132;
-    const rx90_real_t t134 = RX90_C(2.0) * t133;
+    const rx90_real_t t134 = RX90_C(2.0) * t133; /* link j4: motion */
     const rx90_real_t t135 = t32 * t134 - t34 * t131;
     const rx90_real_t t136 = t34 * t129 - t32 * t132;
     const rx90_real_t t137 = dq[3] + t130;
     const rx90_real_t t138 = t136 * t137;
     const rx90_real_t t139 = t135 + t138;
-    const rx90_real_t t140 = t15 * t136 + t13 * t137;
+    const rx90_real_t t140 = t15 * t136 + t13 * t137; /* link j5: motion */
     const rx90_real_t t141 = t13 * t136 - t15 * t137;
     const rx90_real_t t142 = t140 * t141;
-    const rx90_real_t t143 = t139 + t142;
-    const rx90_real_t t144 = t32 * t131 + t34 * t134;
+    const rx90_real_t t143 = t139 + t142; /* link j6: motion */
+    const rx90_real_t t144 = t32 * t131 + t34 * t134; /* link j4: motion */
     const rx90_real_t t145 = t32 * t129 + t34 * t132;
     const rx90_real_t t146 = t145 * t137;
     const rx90_real_t t147 = t144 - t146;
-    const rx90_real_t t148 = t147 - t146;
-    const rx90_real_t t149 = t136 * t145;
-    const rx90_real_t t150 = t129 * t132;
-    const rx90_real_t t151 = t149 - t150;
+    const rx90_real_t t148 = t147 - t146; /* link j5: motion */
+    const rx90_real_t t149 = t136 * t145; /* link j4: motion */
+    const rx90_real_t t150 = t129 * t132; /* link j3: motion */
+    const rx90_real_t t151 = t149 - t150; /* link j5: motion */
     const rx90_real_t t152 = t13 * t151 + t15 * t148;
     const rx90_real_t t153 = dq[4] + t145;
     const rx90_real_t t154 = t141 * t153;
     const rx90_real_t t155 = t152 - t154;
-    const rx90_real_t t156 = t155 - t154;
+    const rx90_real_t t156 = t155 - t154; /* link j6: motion */
     const rx90_real_t t157 = t2 * t156 - t1 * t143;
     const rx90_real_t t158 = t1 * t140 + t2 * t153;
     const rx90_real_t t159 = dq[5] - t141;
@@ -317,145 +330,178 @@ int rx90_forward_dynamics(
     const rx90_real_t t162 = t2 * t143 + t1 * t156;
     const rx90_real_t t163 = t2 * t140 - t1 * t153;
     const rx90_real_t t164 = t163 * t159;
-    const rx90_real_t t165 = t164 + (t162 + t164);
-    const rx90_real_t t166 = t15 * t151 - t13 * t148;
+    const rx90_real_t t165 = t164 + (t162 + t164); /* link j6: force and moment */
+    const rx90_real_t t166 = t15 * t151 - t13 * t148; /* link j5: motion */
     const rx90_real_t t167 = t140 * t153;
     const rx90_real_t t168 = t166 - t167;
-    const rx90_real_t t169 = t163 * t158;
-    const rx90_real_t t170 = t169 - t168;
+    const rx90_real_t t169 = t163 * t158; /* link j6: motion */
+    const rx90_real_t t170 = t169 - t168; /* link j6: force and moment */
     const rx90_real_t t171 = parameters[ZZ6] * t160 - parameters[XX6R] * t161 + parameters[XY6] * t165
         + parameters[XZ6] * t170;
-    const rx90_real_t t172 = t158 * t158;
+    const rx90_real_t t172 = t158 * t158; /* link j6: motion */
     const rx90_real_t t173 = t159 * t159;
-    const rx90_real_t t174 = t128 * t128;
+    const rx90_real_t t174 = t128 * t128; /* link j2: motion */
     const rx90_real_t t175 = dq[1] * dq[1];
     const rx90_real_t t176 = RX90_C(9.81) * t97;
-    const rx90_real_t t177 = t176 - RX90_C(0.45) * (t175 + t174);
-    const rx90_real_t t178 = t127 * t128;
+    const rx90_real_t t177 = t176 - RX90_C(0.45) * (t175 + t174); /* link j3: motion */
+    const rx90_real_t t178 = t127 * t128; /* link j2: motion */
     const rx90_real_t t179 = RX90_C(-9.81) * t95;
-    const rx90_real_t t180 = t179 + RX90_C(-0.45) * t178;
+    const rx90_real_t t180 = t179 + RX90_C(-0.45) * t178; /* link j3: motion */
     const rx90_real_t t181 = t67 * t180 - t68 * t177;
-    const rx90_real_t t182 = t181 + RX90_C(-0.45) * t131;
-    const rx90_real_t t183 = dq[1] * t127;
-    const rx90_real_t t184 = RX90_C(-0.9) * t183;
-    const rx90_real_t t185 = t184 + RX90_C(-0.9) * t133;
+    const rx90_real_t t182 = t181 + RX90_C(-0.45) * t131; /* link j4: motion */
+    const rx90_real_t t183 = dq[1] * t127; /* link j2: motion */
+    const rx90_real_t t184 = RX90_C(-0.9) * t183; /* link j3: motion */
+    const rx90_real_t t185 = t184 + RX90_C(-0.9) * t133; /* link j4: motion */
     const rx90_real_t t186 = t32 * t185 - t34 * t182;
-    const rx90_real_t t187 = t67 * t177 + t68 * t180;
+    const rx90_real_t t187 = t67 * t177 + t68 * t180; /* link j3: motion */
     const rx90_real_t t188 = t129 * t129;
     const rx90_real_t t189 = t132 * t132;
-    const rx90_real_t t190 = t188 + t189;
+    const rx90_real_t t190 = t188 + t189; /* link j4: motion */
     const rx90_real_t t191 = t187 + RX90_C(0.45) * t190;
-    const rx90_real_t t192 = t13 * t186 + t15 * t191;
+    const rx90_real_t t192 = t13 * t186 + t15 * t191; /* link j5: motion */
+    /* link j6: force and moment */
     const rx90_real_t t193 = t171 - parameters[YZ6] * (t172 - t173) + parameters[MY6] * t192;
     const rx90_real_t t194 = t161 - t160;
     const rx90_real_t t195 = t168 + t169;
     const rx90_real_t t196 = t164 * (parameters[XX6R] - parameters[ZZ6]) + parameters[XY6] * t194
         + parameters[YZ6] * t195;
-    const rx90_real_t t197 = t163 * t163;
+    const rx90_real_t t197 = t163 * t163; /* link j6: motion */
+    /* link j6: force and moment */
     const rx90_real_t t198 = t196 + parameters[XZ6] * (t173 - t197) + parameters[MX6] * t192;
-    const rx90_real_t t199 = t167 - t168;
+    const rx90_real_t t199 = t167 - t168; /* link j6: motion */
     const rx90_real_t t200 = t139 - t142;
+    /* link j5: force and moment */
     const rx90_real_t t201 = parameters[ZZ5R] * t154 - parameters[XX5R] * t155 + parameters[XY5] * t199
         - parameters[XZ5] * t200;
-    const rx90_real_t t202 = t141 * t141;
+    const rx90_real_t t202 = t141 * t141; /* link j5: motion */
     const rx90_real_t t203 = t153 * t153;
-    const rx90_real_t t204 = t32 * t182 + t34 * t185;
+    const rx90_real_t t204 = t32 * t182 + t34 * t185; /* link j4: motion */
+    /* link j6: what it passes on */
     const rx90_real_t t205 = t201 + parameters[YZ5] * (t203 - t202) + parameters[MY5R] * t204 + (t2 * t193
         + t1 * t198);
+    /* link j6: force and moment */
     const rx90_real_t t206 = parameters[ZZ6] * t168 + parameters[XX6R] * t169 - parameters[YZ6] * t162
         + parameters[XZ6] * t157;
-    const rx90_real_t t207 = t13 * t191 - t15 * t186;
+    const rx90_real_t t207 = t13 * t191 - t15 * t186; /* link j5: motion */
+    /* link j6: force and moment */
     const rx90_real_t t208 = parameters[MX6] * (t1 * t207 + t2 * t204) + parameters[MY6] * (t2 * t207
         - t1 * t204);
     const rx90_real_t t209 = t206 + parameters[XY6] * (t197 - t172) + t208;
+    /* link j5: force and moment */
     const rx90_real_t t210 = t167 * (parameters[XX5R] - parameters[ZZ5R]) + parameters[XY5] * t156
         + parameters[YZ5] * t143;
-    const rx90_real_t t211 = t140 * t140;
+    const rx90_real_t t211 = t140 * t140; /* link j5: motion */
+    /* link j6: what it passes on */
     const rx90_real_t t212 = t210 + parameters[XZ5] * (t203 - t211) + parameters[MX5] * t204 + t209;
-    const rx90_real_t t213 = t138 + t139;
+    const rx90_real_t t213 = t138 + t139; /* link j5: motion */
     const rx90_real_t t214 = t150 + t149;
+    /* link j4: force and moment */
     const rx90_real_t t215 = parameters[ZZ4R] * t146 - parameters[XX4R] * t147 + parameters[XY4] * t213
         + parameters[XZ4] * t214;
-    const rx90_real_t t216 = t145 * t145;
+    const rx90_real_t t216 = t145 * t145; /* link j4: motion */
     const rx90_real_t t217 = t137 * t137;
+    /* link j5: what it passes on */
     const rx90_real_t t218 = t215 + parameters[YZ4] * (t217 - t216) + parameters[MY4R] * t191 + (t15 * t205
         + t13 * t212);
+    /* link j5: force and moment */
     const rx90_real_t t219 = parameters[ZZ5R] * t139 + parameters[XX5R] * t142 + parameters[YZ5] * t166
         + parameters[XZ5] * t152;
     const rx90_real_t t220 = parameters[XY5] * (t202 - t211) - t219 + (parameters[MX5] * t192
         - parameters[MY5R] * t207);
-    const rx90_real_t t221 = t220 + (t2 * t198 - t1 * t193);
+    const rx90_real_t t221 = t220 + (t2 * t198 - t1 * t193); /* link j6: what it passes on */
+    /* link j4: force and moment */
     const rx90_real_t t222 = t138 * (parameters[XX4R] - parameters[ZZ4R]) + parameters[XY4] * t148
         + parameters[YZ4] * t151;
-    const rx90_real_t t223 = t136 * t136;
+    const rx90_real_t t223 = t136 * t136; /* link j4: motion */
+    /* link j5: what it passes on */
     const rx90_real_t t224 = t222 + parameters[XZ4] * (t217 - t223) + parameters[MX4] * t191 + t221;
+    /* link j6: force and moment */
     const rx90_real_t t225 = parameters[MX6] * (t172 + t173) + parameters[MY6] * t195;
     const rx90_real_t t226 = parameters[MX6] * t170 + parameters[MY6] * (t197 + t173);
+    /* link j6: what it passes on */
     const rx90_real_t t227 = parameters[MX5] * (t202 + t203) + parameters[MY5R] * t143 + (t2 * t225
         - t1 * t226);
     const rx90_real_t t228 = parameters[MX5] * t200 - parameters[MY5R] * (t211 + t203)
         + (parameters[MX6] * t165 + parameters[MY6] * t194);
+    /* link j5: what it passes on */
     const rx90_real_t t229 = parameters[MX4] * (t216 + t217) + parameters[MY4R] * t151 + (t15 * t227
         + t13 * t228);
+    /* link j6: what it passes on */
     const rx90_real_t t230 = parameters[MX5] * t199 + parameters[MY5R] * t156 + (t1 * t225 + t2 * t226);
+    /* link j5: what it passes on */
     const rx90_real_t t231 = parameters[MX4] * t214 + parameters[MY4R] * (t223 + t217) + t230;
-    const rx90_real_t t232 = t32 * t229 + t34 * t231;
-    const rx90_real_t t233 = RX90_C(2.0) * t150;
+    const rx90_real_t t232 = t32 * t229 + t34 * t231; /* link j4: what it passes on */
+    const rx90_real_t t233 = RX90_C(2.0) * t150; /* link j4: motion */
+    /* link j3: force and moment */
     const rx90_real_t t234 = parameters[XY3] * t233 - (parameters[XX3R] * t133 + parameters[ZZ3R] * t133)
         - parameters[XZ3] * t131;
-    const rx90_real_t t235 = t130 * t130;
+    const rx90_real_t t235 = t130 * t130; /* link j3: motion */
+    /* link j4: what it passes on */
     const rx90_real_t t236 = t234 + parameters[YZ3] * (t189 - t235) + parameters[MY3R] * t184 + (t34 * t218
         + t32 * t224 + RX90_C(-0.45) * t232);
+    /* link j4: force and moment */
     const rx90_real_t t237 = parameters[ZZ4R] * t150 - parameters[XX4R] * t149 + parameters[YZ4] * t135
         - parameters[XZ4] * t144;
     const rx90_real_t t238 = t237 - parameters[XY4] * (t223 - t216) + (parameters[MY4R] * t186
         - parameters[MX4] * t204);
-    const rx90_real_t t239 = t238 + (t13 * t205 - t15 * t212);
+    const rx90_real_t t239 = t238 + (t13 * t205 - t15 * t212); /* link j5: what it passes on */
+    /* link j3: force and moment */
     const rx90_real_t t240 = t150 * (parameters[XX3R] - parameters[ZZ3R]) + parameters[XY3] * t134
         - parameters[YZ3] * t131;
+    /* link j4: what it passes on */
     const rx90_real_t t241 = t240 - parameters[XZ3] * (t188 - t189) + parameters[MX3] * t184 - t239;
-    const rx90_real_t t242 = dq[1] * t128;
+    const rx90_real_t t242 = dq[1] * t128; /* link j2: motion */
+    /* link j2: force and moment */
     const rx90_real_t t243 = parameters[XY2] * (RX90_C(2.0) * t183) - (parameters[XX2R] * t242
         + parameters[ZZ2R] * t242);
+    /* link j3: what it passes on */
     const rx90_real_t t244 = t243 - parameters[XZ2R] * t178 + parameters[YZ2] * (t175 - t174) + (t68 * t236
         + t67 * t241);
     const rx90_real_t t245 = t67 * t236 - t68 * t241 + RX90_C(0.45) * (parameters[MX3] * t233
         + parameters[MY3R] * t134 + t232);
+    /* link j2: force and moment */
     const rx90_real_t t246 = t183 * (parameters[ZZ2R] - parameters[XX2R])
         + parameters[XY2] * (RX90_C(-2.0) * t242) + parameters[YZ2] * t178;
-    const rx90_real_t t247 = t127 * t127;
+    const rx90_real_t t247 = t127 * t127; /* link j2: motion */
+    /* link j2: what it passes on */
     const rx90_real_t t248 = t97 * t244 + t95 * (t246 + parameters[XZ2R] * (t247 - t175) + t245);
-    const rx90_real_t t249 = rx90_sign(dq[0]);
+    const rx90_real_t t249 = rx90_sign(dq[0]); /* joint j1: coulomb_friction */
     const rx90_real_t t250 = RX90_C(1.0e2) * (parameters[FV1] * (RX90_C(-1.0e2) * dq[0])
         - parameters[FC1] * t249) + t248;
-    const rx90_real_t t251 = rx90_sign(dq[5]);
+    const rx90_real_t t251 = rx90_sign(dq[5]); /* joint j6: coulomb_friction */
     const rx90_real_t t252 = RX90_C(30.0) * (parameters[FV6] * (RX90_C(30.0) * dq[5])
         + parameters[FC6] * t251) + t209;
     const rx90_real_t t253 = RX90_C(6.0) * input[5] - t252;
-    const rx90_real_t t254 = rx90_sign(dq[4]);
+    const rx90_real_t t254 = rx90_sign(dq[4]); /* joint j5: coulomb_friction */
     const rx90_real_t t255 = RX90_C(50.0) * (parameters[FV5] * (RX90_C(50.0) * dq[4])
         + parameters[FC5] * t254) - t221;
     const rx90_real_t t256 = RX90_C(10.0) * input[4] - t255 - t253 * t5;
     const rx90_real_t t257 = RX90_C(30.0) * input[0] + t250 - t253 * t103 + t256 * t108;
-    const rx90_real_t t258 = rx90_sign(dq[3]);
+    const rx90_real_t t258 = rx90_sign(dq[3]); /* joint j4: coulomb_friction */
     const rx90_real_t t259 = RX90_C(50.0) * (parameters[FV4] * (RX90_C(50.0) * dq[3])
         + parameters[FC4] * t258) - t239;
     const rx90_real_t t260 = RX90_C(10.0) * input[3] - t259 + t253 * t28 - t256 * t21;
-    const rx90_real_t t261 = t34 * t229 - t32 * t231;
+    const rx90_real_t t261 = t34 * t229 - t32 * t231; /* link j4: what it passes on */
+    /* link j3: force and moment */
     const rx90_real_t t262 = parameters[XY3] * (t188 - t235) - parameters[XX3R] * t131
         - (parameters[MX3] * t187 - parameters[MY3R] * t181);
+    /* link j4: what it passes on */
     const rx90_real_t t263 = t262 + (t32 * t218 - t34 * t224 + RX90_C(0.45) * t261);
-    const rx90_real_t t264 = rx90_sign(dq[2]);
+    const rx90_real_t t264 = rx90_sign(dq[2]); /* joint j3: coulomb_friction */
     const rx90_real_t t265 = RX90_C(1.0e2) * (parameters[FV3] * (RX90_C(1.0e2) * dq[2])
         + parameters[FC3] * t264) + t263;
     const rx90_real_t t266 = RX90_C(30.0) * input[2] - t265 - t253 * t56 - t256 * t64;
     const rx90_real_t t267 = t266 + t260 * t55;
+    /* link j3: what it passes on */
     const rx90_real_t t268 = t67 * (parameters[MX3] * (t235 + t189) - parameters[MY3R] * t131 + t261);
+    /* link j5: what it passes on */
     const rx90_real_t t269 = parameters[MX4] * t213 + parameters[MY4R] * t148 - (t13 * t227 - t15 * t228);
+    /* link j3: what it passes on */
     const rx90_real_t t270 = t268 + t68 * (parameters[MY3R] * t190 - parameters[MX3] * t131 - t269);
+    /* link j2: force and moment */
     const rx90_real_t t271 = parameters[XX2R] * t178 - parameters[XY2] * (t247 - t174)
         + (parameters[MX2R] * t179 + parameters[MY2] * t176);
-    const rx90_real_t t272 = rx90_sign(dq[1]);
+    const rx90_real_t t272 = rx90_sign(dq[1]); /* joint j2: coulomb_friction */
     const rx90_real_t t273 = RX90_C(1.0e2) * (parameters[FV2] * (RX90_C(1.0e2) * dq[1])
         + parameters[FC2] * t272) - (t271 - (t263 - RX90_C(0.45) * t270));
     const rx90_real_t t274 = RX90_C(30.0) * input[1] - t273 - t253 * t82 + t256 * t81;

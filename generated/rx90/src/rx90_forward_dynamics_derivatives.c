@@ -7,7 +7,7 @@
  * Arm rx90, description 10f0505273a073e2.
  * SPDX-License-Identifier: 0BSD
  *
- * Operations: 3605 (2016 mul, 1589 add, 0 neg), 6 div, 10 trig, 6 other.
+ * Operations: 3605 (2016 mul, 1589 add, 0 neg), 6 div, 10 trig, 6 other calls (sign, select and the like).
  *
  * @param[in]   q             [6]   [rad]                    joint coordinates; norm at most 10000
  * @param[in]   dq            [6]   [rad/s]                  joint velocities; norm at most 100000
@@ -15,9 +15,9 @@
  *                                                           norm at most 1e+09
  * @param[in]   parameters    [52]                           base parameters; norm at most 1e+09
  * @param[out]  ddq           [6]   [rad/s^2]                joint accelerations
- * @param[out]  ddq_by_q      [36]  [(rad/s^2) per (rad)]    d ddq / d q; 6 x 6, row-major
+ * @param[out]  ddq_by_q      [36]  [(rad/s^2) per rad]      d ddq / d q; 6 x 6, row-major
  * @param[out]  ddq_by_dq     [36]  [(rad/s^2) per (rad/s)]  d ddq / d dq; 6 x 6, row-major
- * @param[out]  ddq_by_input  [36]  [(rad/s^2) per (A)]      d ddq / d input; 6 x 6, row-major
+ * @param[out]  ddq_by_input  [36]  [(rad/s^2) per A]        d ddq / d input; 6 x 6, row-major
  *
  * Coordinates:
  *
@@ -85,11 +85,11 @@
  */
 #include "rx90_private.h"
 
-#if RX90_GENERATION != 0xD1F0D18FUL
+#if RX90_GENERATION != 0x88006983UL
 #error "rx90.h and rx90_forward_dynamics_derivatives.c are of different generations: generate the arm again"
 #endif
 
-int rx90_forward_dynamics_derivatives(
+rx90_status_t rx90_forward_dynamics_derivatives(
     const rx90_real_t q[RX90_N_JOINTS],
     const rx90_real_t dq[RX90_N_JOINTS],
     const rx90_real_t input[RX90_N_JOINTS],
@@ -102,7 +102,7 @@ int rx90_forward_dynamics_derivatives(
     enum { ZZ1R = 0, XX2R, XY2, XZ2R, YZ2, ZZ2R, MX2R, MY2, XX3R, XY3, XZ3, YZ3, ZZ3R, MX3, MY3R, XX4R, XY4,
         XZ4, YZ4, ZZ4R, MX4, MY4R, XX5R, XY5, XZ5, YZ5, ZZ5R, MX5, MY5R, XX6R, XY6, XZ6, YZ6, ZZ6, MX6, MY6,
         FV1, FC1, FV2, FC2, FV3, FC3, IA3, FV4, FC4, IA4, FV5, FC5, IA5, FV6, FC6, IA6 };
-    int status = RX90_STATUS_OK;
+    rx90_status_t status = RX90_STATUS_OK;
 
     if (!rx90_within_joints(q, RX90_C(1.0e8))
         || !rx90_within_joints(dq, RX90_C(1.0e10))
@@ -136,9 +136,11 @@ int rx90_forward_dynamics_derivatives(
         rx90_zero(ddq_by_input, 36);
         return RX90_STATUS_PIVOT;
     }
+    /* link j6: column of the mass matrix */
     const rx90_real_t t3 = t1 * parameters[XZ6] + t2 * parameters[YZ6];
     const rx90_real_t t4 = RX90_C(1.0) / t0;
     const rx90_real_t t5 = t3 * t4;
+    /* link j6: inertia of it and all beyond */
     const rx90_real_t t6 = parameters[XY6] * (RX90_C(2.0) * t1) - t2 * parameters[XX6R];
     const rx90_real_t t7 = t2 * t6;
     const rx90_real_t t8 = parameters[ZZ5R] + (parameters[XX6R] + t7);
@@ -161,14 +163,16 @@ int rx90_forward_dynamics_derivatives(
     }
     const rx90_real_t t12 = parameters[XZ5] - (parameters[XY6] - t1 * t6);
     const rx90_real_t t14 = parameters[YZ5] - t3;
-    const rx90_real_t t16 = t13 * t12 + t15 * t14;
+    const rx90_real_t t16 = t13 * t12 + t15 * t14; /* link j5: column of the mass matrix */
+    /* link j6: column of the mass matrix */
     const rx90_real_t t17 = t2 * parameters[XZ6] - t1 * parameters[YZ6];
     const rx90_real_t t18 = t13 * t17 + t15 * parameters[ZZ6];
     const rx90_real_t t19 = t16 + t18 * t5;
     const rx90_real_t t20 = RX90_C(1.0) / t10;
     const rx90_real_t t21 = t19 * t20;
-    const rx90_real_t t22 = parameters[XX5R] - t7;
+    const rx90_real_t t22 = parameters[XX5R] - t7; /* link j6: inertia of it and all beyond */
     const rx90_real_t t23 = parameters[XY5] + t17;
+    /* link j5: inertia of it and all beyond */
     const rx90_real_t t24 = t15 * (parameters[ZZ6] - t22) + t23 * (RX90_C(2.0) * t13);
     const rx90_real_t t25 = t15 * t24;
     const rx90_real_t t26 = parameters[ZZ4R] + (t22 + t25);
@@ -192,20 +196,22 @@ int rx90_forward_dynamics_derivatives(
     }
     const rx90_real_t t31 = t13 * t24 - t23 - parameters[XZ4];
     const rx90_real_t t33 = parameters[YZ4] - t16;
+    /* link j6: column of the mass matrix */
     const rx90_real_t t35 = t2 * parameters[MY6] + t1 * parameters[MX6];
-    const rx90_real_t t36 = parameters[MY4R] + t35;
+    const rx90_real_t t36 = parameters[MY4R] + t35; /* link j5: inertia of it and all beyond */
+    /* link j6: column of the mass matrix */
     const rx90_real_t t37 = t2 * parameters[MX6] - t1 * parameters[MY6];
-    const rx90_real_t t38 = parameters[MX5] + t37;
-    const rx90_real_t t39 = t15 * t38 - t13 * parameters[MY5R];
-    const rx90_real_t t40 = parameters[MX4] + t39;
-    const rx90_real_t t41 = t34 * t36 + t32 * t40;
+    const rx90_real_t t38 = parameters[MX5] + t37; /* link j6: inertia of it and all beyond */
+    const rx90_real_t t39 = t15 * t38 - t13 * parameters[MY5R]; /* link j5: column of the mass matrix */
+    const rx90_real_t t40 = parameters[MX4] + t39; /* link j5: inertia of it and all beyond */
+    const rx90_real_t t41 = t34 * t36 + t32 * t40; /* link j4: column of the mass matrix */
     const rx90_real_t t42 = RX90_C(-0.45) * t41;
     const rx90_real_t t43 = t34 * t33 - t32 * t31 + t42;
-    const rx90_real_t t44 = t15 * t17 - t13 * parameters[ZZ6];
+    const rx90_real_t t44 = t15 * t17 - t13 * parameters[ZZ6]; /* link j6: column of the mass matrix */
     const rx90_real_t t45 = t15 * t35;
     const rx90_real_t t46 = t34 * t45 + t32 * t37;
     const rx90_real_t t47 = RX90_C(0.45) * t46 - (t32 * t44 + t34 * t3);
-    const rx90_real_t t48 = t15 * t12 - t13 * t14;
+    const rx90_real_t t48 = t15 * t12 - t13 * t14; /* link j5: column of the mass matrix */
     const rx90_real_t t49 = t15 * parameters[MY5R] + t13 * t38;
     const rx90_real_t t50 = t34 * t49;
     const rx90_real_t t51 = t34 * t8 - t32 * t48 + RX90_C(0.45) * t50;
@@ -214,8 +220,10 @@ int rx90_forward_dynamics_derivatives(
     const rx90_real_t t54 = RX90_C(1.0) / t29;
     const rx90_real_t t55 = t53 * t54;
     const rx90_real_t t56 = t47 * t4;
+    /* link j5: inertia of it and all beyond */
     const rx90_real_t t57 = t25 - parameters[ZZ6] - parameters[XX4R];
     const rx90_real_t t58 = parameters[XY4] - t48;
+    /* link j4: inertia of it and all beyond */
     const rx90_real_t t59 = t34 * (t8 + t57) + t58 * (RX90_C(2.0) * t32);
     const rx90_real_t t60 = t34 * t59;
     const rx90_real_t t61 = RX90_C(0.9) * t49;
@@ -238,19 +246,19 @@ int rx90_forward_dynamics_derivatives(
         rx90_zero(ddq_by_input, 36);
         return RX90_STATUS_PIVOT;
     }
-    const rx90_real_t t68 = t67 * t41;
+    const rx90_real_t t68 = t67 * t41; /* link j4: column of the mass matrix */
     const rx90_real_t t69 = t43 + RX90_C(0.45) * t68;
-    const rx90_real_t t70 = t13 * t35;
+    const rx90_real_t t70 = t13 * t35; /* link j6: column of the mass matrix */
     const rx90_real_t t72 = t67 * t46 + t71 * t70;
     const rx90_real_t t73 = t47 + RX90_C(-0.45) * t72;
-    const rx90_real_t t74 = t71 * t39 - t67 * t50;
+    const rx90_real_t t74 = t71 * t39 - t67 * t50; /* link j5: column of the mass matrix */
     const rx90_real_t t75 = t51 + RX90_C(0.45) * t74;
     const rx90_real_t t76 = t75 + t73 * t5;
     const rx90_real_t t77 = t69 + t73 * t28 + t76 * t21;
-    const rx90_real_t t78 = t34 * t40 - t32 * t36;
-    const rx90_real_t t79 = parameters[MX3] + t78;
+    const rx90_real_t t78 = t34 * t40 - t32 * t36; /* link j4: column of the mass matrix */
+    const rx90_real_t t79 = parameters[MX3] + t78; /* link j4: inertia of it and all beyond */
     const rx90_real_t t80 = parameters[MY3R] + t49;
-    const rx90_real_t t81 = t67 * t80 - t71 * t79;
+    const rx90_real_t t81 = t67 * t80 - t71 * t79; /* link j3: column of the mass matrix */
     const rx90_real_t t82 = RX90_C(0.45) * t81 - t62;
     const rx90_real_t t83 = t82 + t73 * t56 + t76 * t64 + t77 * t55;
     const rx90_real_t t84 = RX90_C(1.0) / t65;
@@ -258,7 +266,7 @@ int rx90_forward_dynamics_derivatives(
     const rx90_real_t t86 = t77 * t54;
     const rx90_real_t t87 = t76 * t20;
     const rx90_real_t t88 = t73 * t4;
-    const rx90_real_t t89 = RX90_C(-0.9) * t81;
+    const rx90_real_t t89 = RX90_C(-0.9) * t81; /* link j3: inertia of it and all beyond */
     const rx90_real_t t90 = parameters[ZZ2R] + (t62 + t89);
     const rx90_real_t t91 = t90 - t73 * t88 - t76 * t87 - t77 * t86;
     const rx90_real_t t92 = rx90_bounded(t91 - t83 * t85);
@@ -277,45 +285,48 @@ int rx90_forward_dynamics_derivatives(
         rx90_zero(ddq_by_input, 36);
         return RX90_STATUS_PIVOT;
     }
-    const rx90_real_t t94 = parameters[XX3R] + (t8 - t60 + t61);
-    const rx90_real_t t95 = RX90_C(-0.45) * t78;
+    const rx90_real_t t94 = parameters[XX3R] + (t8 - t60 + t61); /* link j4: inertia of it and all beyond */
+    const rx90_real_t t95 = RX90_C(-0.45) * t78; /* link j4: column of the mass matrix */
     const rx90_real_t t96 = t34 * t31 + t32 * t33 - t95;
-    const rx90_real_t t97 = t96 - parameters[XY3];
+    const rx90_real_t t97 = t96 - parameters[XY3]; /* link j4: inertia of it and all beyond */
+    /* link j3: inertia of it and all beyond */
     const rx90_real_t t98 = t71 * (t94 - t26) - t97 * (RX90_C(-2.0) * t67);
     const rx90_real_t t99 = t71 * t98;
     const rx90_real_t t100 = t94 - t99 + t89;
     const rx90_real_t t101 = parameters[XX2R] + (t26 + t99);
-    const rx90_real_t t103 = t71 * t80 + t67 * t79;
+    const rx90_real_t t103 = t71 * t80 + t67 * t79; /* link j3: column of the mass matrix */
+    /* link j3: inertia of it and all beyond */
     const rx90_real_t t104 = parameters[XY2] + (t67 * t98 - t97 + RX90_C(-0.45) * t103);
+    /* link j2: inertia of it and all beyond */
     const rx90_real_t t106 = t102 * (t102 * (t100 - t101) + t104 * (RX90_C(2.0) * t105));
     const rx90_real_t t107 = parameters[ZZ1R] + (t101 + t106);
-    const rx90_real_t t108 = t32 * t45 - t34 * t37;
+    const rx90_real_t t108 = t32 * t45 - t34 * t37; /* link j6: column of the mass matrix */
     const rx90_real_t t109 = RX90_C(0.45) * t108;
     const rx90_real_t t110 = t34 * t44 - t32 * t3 + t109;
     const rx90_real_t t111 = t67 * t18 - t71 * t110;
     const rx90_real_t t112 = t67 * t110 + t71 * t18 - t109;
     const rx90_real_t t113 = t102 * t112 - t105 * t111;
     const rx90_real_t t114 = t113 * t4;
-    const rx90_real_t t115 = t32 * t49;
+    const rx90_real_t t115 = t32 * t49; /* link j5: column of the mass matrix */
     const rx90_real_t t116 = RX90_C(0.45) * t115;
     const rx90_real_t t117 = t34 * t48 + t32 * t8 + t116;
     const rx90_real_t t118 = t67 * t16 - t71 * t117;
     const rx90_real_t t119 = t67 * t117 + t71 * t16 - t116;
     const rx90_real_t t120 = t102 * t119 - t105 * t118 + t113 * t5;
     const rx90_real_t t121 = t120 * t20;
-    const rx90_real_t t122 = t71 * t96 + t67 * t26;
+    const rx90_real_t t122 = t71 * t96 + t67 * t26; /* link j4: column of the mass matrix */
     const rx90_real_t t123 = t95 + (t67 * t96 - t71 * t26);
     const rx90_real_t t124 = t105 * t122 + t102 * t123 + t113 * t28 + t120 * t21;
     const rx90_real_t t125 = t124 * t54;
     const rx90_real_t t126 = t107 - t113 * t114 - t120 * t121 - t124 * t125;
-    const rx90_real_t t127 = parameters[XZ3] + (t32 * t59 - t58);
+    const rx90_real_t t127 = parameters[XZ3] + (t32 * t59 - t58); /* link j4: inertia of it and all beyond */
     const rx90_real_t t128 = parameters[YZ3] - t43;
-    const rx90_real_t t129 = t67 * t128 - t71 * t127;
+    const rx90_real_t t129 = t67 * t128 - t71 * t127; /* link j3: column of the mass matrix */
     const rx90_real_t t130 = t67 * t127 + t71 * t128;
     const rx90_real_t t131 = t102 * t130 - t105 * t129 - t113 * t56 - t120 * t64;
     const rx90_real_t t132 = t131 - t124 * t55;
     const rx90_real_t t133 = t132 * t84;
-    const rx90_real_t t134 = t42 + t129 - parameters[XZ2R];
+    const rx90_real_t t134 = t42 + t129 - parameters[XZ2R]; /* link j3: inertia of it and all beyond */
     const rx90_real_t t135 = parameters[YZ2] + t130;
     const rx90_real_t t136 = t102 * t135 - t105 * t134 - t113 * t88 - t120 * t87;
     const rx90_real_t t137 = t136 - t124 * t86 + t132 * t85;
@@ -337,38 +348,38 @@ int rx90_forward_dynamics_derivatives(
         rx90_zero(ddq_by_input, 36);
         return RX90_STATUS_PIVOT;
     }
-    const rx90_real_t t142 = t105 * dq[0];
+    const rx90_real_t t142 = t105 * dq[0]; /* link j2: motion */
     const rx90_real_t t143 = t102 * dq[0];
-    const rx90_real_t t144 = t71 * t142 + t67 * t143;
+    const rx90_real_t t144 = t71 * t142 + t67 * t143; /* link j3: motion */
     const rx90_real_t t145 = t71 * t143 - t67 * t142;
     const rx90_real_t t146 = t144 * t145;
     const rx90_real_t t147 = dq[1] + dq[2];
     const rx90_real_t t148 = t145 * t147;
-    const rx90_real_t t149 = RX90_C(2.0) * t148;
+    const rx90_real_t t149 = RX90_C(2.0) * t148; /* link j4: motion */
     const rx90_real_t t150 = t32 * t149 - t34 * t146;
     const rx90_real_t t151 = t32 * t147;
     const rx90_real_t t152 = t34 * t144 - t151;
     const rx90_real_t t153 = dq[3] + t145;
     const rx90_real_t t154 = t152 * t153;
     const rx90_real_t t155 = t150 + t154;
-    const rx90_real_t t156 = t15 * t152 + t13 * t153;
+    const rx90_real_t t156 = t15 * t152 + t13 * t153; /* link j5: motion */
     const rx90_real_t t157 = t13 * t152 - t15 * t153;
     const rx90_real_t t158 = t156 * t157;
-    const rx90_real_t t159 = t155 + t158;
-    const rx90_real_t t160 = t32 * t146 + t34 * t149;
+    const rx90_real_t t159 = t155 + t158; /* link j6: motion */
+    const rx90_real_t t160 = t32 * t146 + t34 * t149; /* link j4: motion */
     const rx90_real_t t161 = t34 * t147;
     const rx90_real_t t162 = t32 * t144 + t161;
     const rx90_real_t t163 = t162 * t153;
     const rx90_real_t t164 = t160 - t163;
-    const rx90_real_t t165 = t164 - t163;
-    const rx90_real_t t166 = t152 * t162;
-    const rx90_real_t t167 = t144 * t147;
-    const rx90_real_t t168 = t166 - t167;
+    const rx90_real_t t165 = t164 - t163; /* link j5: motion */
+    const rx90_real_t t166 = t152 * t162; /* link j4: motion */
+    const rx90_real_t t167 = t144 * t147; /* link j3: motion */
+    const rx90_real_t t168 = t166 - t167; /* link j5: motion */
     const rx90_real_t t169 = t13 * t168 + t15 * t165;
     const rx90_real_t t170 = dq[4] + t162;
     const rx90_real_t t171 = t157 * t170;
     const rx90_real_t t172 = t169 - t171;
-    const rx90_real_t t173 = t172 - t171;
+    const rx90_real_t t173 = t172 - t171; /* link j6: motion */
     const rx90_real_t t174 = t2 * t173 - t1 * t159;
     const rx90_real_t t175 = t1 * t156 + t2 * t170;
     const rx90_real_t t176 = dq[5] - t157;
@@ -377,152 +388,179 @@ int rx90_forward_dynamics_derivatives(
     const rx90_real_t t179 = t2 * t159 + t1 * t173;
     const rx90_real_t t180 = t2 * t156 - t1 * t170;
     const rx90_real_t t181 = t180 * t176;
-    const rx90_real_t t182 = t181 + (t179 + t181);
-    const rx90_real_t t183 = t15 * t168 - t13 * t165;
+    const rx90_real_t t182 = t181 + (t179 + t181); /* link j6: force and moment */
+    const rx90_real_t t183 = t15 * t168 - t13 * t165; /* link j5: motion */
     const rx90_real_t t184 = t156 * t170;
     const rx90_real_t t185 = t183 - t184;
-    const rx90_real_t t186 = t180 * t175;
-    const rx90_real_t t187 = t186 - t185;
+    const rx90_real_t t186 = t180 * t175; /* link j6: motion */
+    const rx90_real_t t187 = t186 - t185; /* link j6: force and moment */
     const rx90_real_t t188 = parameters[ZZ6] * t177 - parameters[XX6R] * t178 + parameters[XY6] * t182
         + parameters[XZ6] * t187;
-    const rx90_real_t t189 = t175 * t175;
+    const rx90_real_t t189 = t175 * t175; /* link j6: motion */
     const rx90_real_t t190 = t176 * t176;
-    const rx90_real_t t191 = t143 * t143;
+    const rx90_real_t t191 = t143 * t143; /* link j2: motion */
     const rx90_real_t t192 = dq[1] * dq[1];
     const rx90_real_t t193 = RX90_C(-9.81) * t105;
-    const rx90_real_t t194 = t193 + RX90_C(0.45) * (t192 + t191);
+    const rx90_real_t t194 = t193 + RX90_C(0.45) * (t192 + t191); /* link j3: motion */
     const rx90_real_t t195 = t71 * t194;
-    const rx90_real_t t196 = t142 * t143;
+    const rx90_real_t t196 = t142 * t143; /* link j2: motion */
     const rx90_real_t t197 = RX90_C(9.81) * t102;
-    const rx90_real_t t198 = RX90_C(-0.45) * t196 - t197;
+    const rx90_real_t t198 = RX90_C(-0.45) * t196 - t197; /* link j3: motion */
     const rx90_real_t t199 = t195 + t67 * t198;
-    const rx90_real_t t200 = t199 + RX90_C(-0.45) * t146;
-    const rx90_real_t t201 = dq[1] * t142;
-    const rx90_real_t t202 = RX90_C(-0.9) * t201;
-    const rx90_real_t t203 = t202 + RX90_C(-0.9) * t148;
+    const rx90_real_t t200 = t199 + RX90_C(-0.45) * t146; /* link j4: motion */
+    const rx90_real_t t201 = dq[1] * t142; /* link j2: motion */
+    const rx90_real_t t202 = RX90_C(-0.9) * t201; /* link j3: motion */
+    const rx90_real_t t203 = t202 + RX90_C(-0.9) * t148; /* link j4: motion */
     const rx90_real_t t204 = t32 * t203 - t34 * t200;
-    const rx90_real_t t205 = t67 * t194;
+    const rx90_real_t t205 = t67 * t194; /* link j3: motion */
     const rx90_real_t t206 = t71 * t198 - t205;
     const rx90_real_t t207 = t144 * t144;
     const rx90_real_t t208 = t147 * t147;
-    const rx90_real_t t209 = t207 + t208;
+    const rx90_real_t t209 = t207 + t208; /* link j4: motion */
     const rx90_real_t t210 = t206 + RX90_C(0.45) * t209;
-    const rx90_real_t t211 = t13 * t204 + t15 * t210;
+    const rx90_real_t t211 = t13 * t204 + t15 * t210; /* link j5: motion */
+    /* link j6: force and moment */
     const rx90_real_t t212 = t188 - parameters[YZ6] * (t189 - t190) + parameters[MY6] * t211;
     const rx90_real_t t213 = t178 - t177;
     const rx90_real_t t214 = parameters[XX6R] - parameters[ZZ6];
     const rx90_real_t t215 = t185 + t186;
-    const rx90_real_t t216 = t180 * t180;
+    const rx90_real_t t216 = t180 * t180; /* link j6: motion */
+    /* link j6: force and moment */
     const rx90_real_t t217 = t181 * t214 + parameters[XY6] * t213 + parameters[YZ6] * t215
         + parameters[XZ6] * (t190 - t216);
     const rx90_real_t t218 = t217 + parameters[MX6] * t211;
-    const rx90_real_t t219 = t184 - t185;
+    const rx90_real_t t219 = t184 - t185; /* link j6: motion */
     const rx90_real_t t220 = t155 - t158;
+    /* link j5: force and moment */
     const rx90_real_t t221 = parameters[ZZ5R] * t171 - parameters[XX5R] * t172 + parameters[XY5] * t219
         - parameters[XZ5] * t220;
-    const rx90_real_t t222 = t157 * t157;
+    const rx90_real_t t222 = t157 * t157; /* link j5: motion */
     const rx90_real_t t223 = t170 * t170;
-    const rx90_real_t t224 = t32 * t200 + t34 * t203;
+    const rx90_real_t t224 = t32 * t200 + t34 * t203; /* link j4: motion */
+    /* link j6: what it passes on */
     const rx90_real_t t225 = t221 + parameters[YZ5] * (t223 - t222) + parameters[MY5R] * t224 + (t2 * t212
         + t1 * t218);
+    /* link j6: force and moment */
     const rx90_real_t t226 = parameters[ZZ6] * t185 + parameters[XX6R] * t186 - parameters[YZ6] * t179
         + parameters[XZ6] * t174;
-    const rx90_real_t t227 = t13 * t210 - t15 * t204;
+    const rx90_real_t t227 = t13 * t210 - t15 * t204; /* link j5: motion */
+    /* link j6: force and moment */
     const rx90_real_t t228 = parameters[MX6] * (t1 * t227 + t2 * t224) + parameters[MY6] * (t2 * t227
         - t1 * t224);
     const rx90_real_t t229 = t226 + parameters[XY6] * (t216 - t189) + t228;
-    const rx90_real_t t230 = parameters[XX5R] - parameters[ZZ5R];
-    const rx90_real_t t231 = t156 * t156;
+    const rx90_real_t t230 = parameters[XX5R] - parameters[ZZ5R]; /* link j5: force and moment */
+    const rx90_real_t t231 = t156 * t156; /* link j5: motion */
+    /* link j5: force and moment */
     const rx90_real_t t232 = t184 * t230 + parameters[XY5] * t173 + parameters[YZ5] * t159
         + parameters[XZ5] * (t223 - t231);
-    const rx90_real_t t233 = t232 + parameters[MX5] * t224 + t229;
-    const rx90_real_t t234 = t154 + t155;
+    const rx90_real_t t233 = t232 + parameters[MX5] * t224 + t229; /* link j6: what it passes on */
+    const rx90_real_t t234 = t154 + t155; /* link j5: motion */
     const rx90_real_t t235 = t167 + t166;
+    /* link j4: force and moment */
     const rx90_real_t t236 = parameters[ZZ4R] * t163 - parameters[XX4R] * t164 + parameters[XY4] * t234
         + parameters[XZ4] * t235;
-    const rx90_real_t t237 = t162 * t162;
+    const rx90_real_t t237 = t162 * t162; /* link j4: motion */
     const rx90_real_t t238 = t153 * t153;
+    /* link j5: what it passes on */
     const rx90_real_t t239 = t236 + parameters[YZ4] * (t238 - t237) + parameters[MY4R] * t210 + (t15 * t225
         + t13 * t233);
+    /* link j5: force and moment */
     const rx90_real_t t240 = parameters[ZZ5R] * t155 + parameters[XX5R] * t158 + parameters[YZ5] * t183
         + parameters[XZ5] * t169;
     const rx90_real_t t241 = parameters[XY5] * (t222 - t231) - t240 + (parameters[MX5] * t211
         - parameters[MY5R] * t227);
-    const rx90_real_t t242 = t241 + (t2 * t218 - t1 * t212);
-    const rx90_real_t t243 = parameters[XX4R] - parameters[ZZ4R];
-    const rx90_real_t t244 = t152 * t152;
+    const rx90_real_t t242 = t241 + (t2 * t218 - t1 * t212); /* link j6: what it passes on */
+    const rx90_real_t t243 = parameters[XX4R] - parameters[ZZ4R]; /* link j4: force and moment */
+    const rx90_real_t t244 = t152 * t152; /* link j4: motion */
+    /* link j4: force and moment */
     const rx90_real_t t245 = t154 * t243 + parameters[XY4] * t165 + parameters[YZ4] * t168
         + parameters[XZ4] * (t238 - t244);
-    const rx90_real_t t246 = t245 + parameters[MX4] * t210 + t242;
+    const rx90_real_t t246 = t245 + parameters[MX4] * t210 + t242; /* link j5: what it passes on */
+    /* link j6: force and moment */
     const rx90_real_t t247 = parameters[MX6] * (t189 + t190) + parameters[MY6] * t215;
     const rx90_real_t t248 = parameters[MX6] * t187 + parameters[MY6] * (t216 + t190);
+    /* link j6: what it passes on */
     const rx90_real_t t249 = parameters[MX5] * (t222 + t223) + parameters[MY5R] * t159 + (t2 * t247
         - t1 * t248);
     const rx90_real_t t250 = parameters[MX5] * t220 - parameters[MY5R] * (t231 + t223)
         + (parameters[MX6] * t182 + parameters[MY6] * t213);
+    /* link j5: what it passes on */
     const rx90_real_t t251 = parameters[MX4] * (t237 + t238) + parameters[MY4R] * t168 + (t15 * t249
         + t13 * t250);
+    /* link j6: what it passes on */
     const rx90_real_t t252 = parameters[MX5] * t219 + parameters[MY5R] * t173 + (t1 * t247 + t2 * t248);
+    /* link j5: what it passes on */
     const rx90_real_t t253 = parameters[MX4] * t235 + parameters[MY4R] * (t244 + t238) + t252;
-    const rx90_real_t t254 = t32 * t251 + t34 * t253;
-    const rx90_real_t t255 = RX90_C(2.0) * t167;
+    const rx90_real_t t254 = t32 * t251 + t34 * t253; /* link j4: what it passes on */
+    const rx90_real_t t255 = RX90_C(2.0) * t167; /* link j4: motion */
+    /* link j3: force and moment */
     const rx90_real_t t256 = parameters[XY3] * t255 - (parameters[XX3R] * t148 + parameters[ZZ3R] * t148)
         - parameters[XZ3] * t146;
-    const rx90_real_t t257 = t145 * t145;
+    const rx90_real_t t257 = t145 * t145; /* link j3: motion */
+    /* link j4: what it passes on */
     const rx90_real_t t258 = t256 + parameters[YZ3] * (t208 - t257) + parameters[MY3R] * t202 + (t34 * t239
         + t32 * t246 + RX90_C(-0.45) * t254);
+    /* link j4: force and moment */
     const rx90_real_t t259 = parameters[ZZ4R] * t167 - parameters[XX4R] * t166 + parameters[YZ4] * t150
         - parameters[XZ4] * t160;
     const rx90_real_t t260 = t259 - parameters[XY4] * (t244 - t237) + (parameters[MY4R] * t204
         - parameters[MX4] * t224);
-    const rx90_real_t t261 = t260 + (t13 * t225 - t15 * t233);
-    const rx90_real_t t262 = parameters[ZZ3R] - parameters[XX3R];
+    const rx90_real_t t261 = t260 + (t13 * t225 - t15 * t233); /* link j5: what it passes on */
+    const rx90_real_t t262 = parameters[ZZ3R] - parameters[XX3R]; /* link j3: force and moment */
     const rx90_real_t t263 = parameters[XY3] * t149 - t167 * t262 - parameters[YZ3] * t146
         - parameters[XZ3] * (t207 - t208);
-    const rx90_real_t t264 = t263 + parameters[MX3] * t202 - t261;
-    const rx90_real_t t265 = dq[1] * t143;
-    const rx90_real_t t266 = parameters[ZZ2R] * t265;
+    const rx90_real_t t264 = t263 + parameters[MX3] * t202 - t261; /* link j4: what it passes on */
+    const rx90_real_t t265 = dq[1] * t143; /* link j2: motion */
+    const rx90_real_t t266 = parameters[ZZ2R] * t265; /* link j2: force and moment */
     const rx90_real_t t267 = parameters[XY2] * (RX90_C(2.0) * t201) - (parameters[XX2R] * t265 + t266)
         - parameters[XZ2R] * t196;
     const rx90_real_t t268 = parameters[YZ2] * (t192 - t191);
+    /* link j2: what it passes on */
     const rx90_real_t t269 = t105 * (t267 + t268 + (t71 * t258 + t67 * t264));
+    /* link j3: what it passes on */
     const rx90_real_t t270 = t67 * t258 - t71 * t264 + RX90_C(0.45) * (parameters[MX3] * t255
         + parameters[MY3R] * t149 + t254);
-    const rx90_real_t t271 = t201 * (parameters[ZZ2R] - parameters[XX2R]);
-    const rx90_real_t t272 = t142 * t142;
-    const rx90_real_t t273 = parameters[XZ2R] * (t272 - t192);
+    const rx90_real_t t271 = t201 * (parameters[ZZ2R] - parameters[XX2R]); /* link j2: force and moment */
+    const rx90_real_t t272 = t142 * t142; /* link j2: motion */
+    const rx90_real_t t273 = parameters[XZ2R] * (t272 - t192); /* link j2: force and moment */
     const rx90_real_t t274 = t271 + parameters[XY2] * (RX90_C(-2.0) * t265) + parameters[YZ2] * t196 + t273;
-    const rx90_real_t t275 = rx90_sign(dq[0]);
+    const rx90_real_t t275 = rx90_sign(dq[0]); /* joint j1: coulomb_friction */
     const rx90_real_t t276 = RX90_C(1.0e2) * (parameters[FV1] * (RX90_C(-1.0e2) * dq[0])
         - parameters[FC1] * t275) + (t269 + t102 * (t274 + t270));
-    const rx90_real_t t277 = rx90_sign(dq[5]);
+    const rx90_real_t t277 = rx90_sign(dq[5]); /* joint j6: coulomb_friction */
     const rx90_real_t t278 = RX90_C(30.0) * (parameters[FV6] * (RX90_C(30.0) * dq[5])
         + parameters[FC6] * t277) + t229;
     const rx90_real_t t279 = RX90_C(6.0) * input[5] - t278;
-    const rx90_real_t t280 = rx90_sign(dq[4]);
+    const rx90_real_t t280 = rx90_sign(dq[4]); /* joint j5: coulomb_friction */
     const rx90_real_t t281 = RX90_C(50.0) * (parameters[FV5] * (RX90_C(50.0) * dq[4])
         + parameters[FC5] * t280) - t242;
     const rx90_real_t t282 = RX90_C(10.0) * input[4] - t281 + t279 * t5;
     const rx90_real_t t283 = RX90_C(30.0) * input[0] + t276 - t279 * t114 - t282 * t121;
-    const rx90_real_t t284 = rx90_sign(dq[3]);
+    const rx90_real_t t284 = rx90_sign(dq[3]); /* joint j4: coulomb_friction */
     const rx90_real_t t285 = RX90_C(50.0) * (parameters[FV4] * (RX90_C(50.0) * dq[3])
         + parameters[FC4] * t284) - t261;
     const rx90_real_t t286 = RX90_C(10.0) * input[3] - t285 - t279 * t28 - t282 * t21;
-    const rx90_real_t t287 = t34 * t251 - t32 * t253;
+    const rx90_real_t t287 = t34 * t251 - t32 * t253; /* link j4: what it passes on */
+    /* link j3: force and moment */
     const rx90_real_t t288 = parameters[XY3] * (t207 - t257) - parameters[XX3R] * t146
         - (parameters[MX3] * t206 - parameters[MY3R] * t199);
+    /* link j4: what it passes on */
     const rx90_real_t t289 = t288 + (t32 * t239 - t34 * t246 + RX90_C(0.45) * t287);
-    const rx90_real_t t290 = rx90_sign(dq[2]);
+    const rx90_real_t t290 = rx90_sign(dq[2]); /* joint j3: coulomb_friction */
     const rx90_real_t t291 = RX90_C(1.0e2) * (parameters[FV3] * (RX90_C(1.0e2) * dq[2])
         + parameters[FC3] * t290) + t289;
     const rx90_real_t t292 = RX90_C(30.0) * input[2] - t291 - t279 * t56 - t282 * t64;
     const rx90_real_t t293 = t292 + t286 * t55;
+    /* link j3: what it passes on */
     const rx90_real_t t294 = t67 * (parameters[MX3] * (t257 + t208) - parameters[MY3R] * t146 + t287);
+    /* link j5: what it passes on */
     const rx90_real_t t295 = parameters[MX4] * t234 + parameters[MY4R] * t165 - (t13 * t249 - t15 * t250);
+    /* link j3: what it passes on */
     const rx90_real_t t296 = t294 + t71 * (parameters[MY3R] * t209 - parameters[MX3] * t146 - t295);
+    /* link j2: force and moment */
     const rx90_real_t t297 = parameters[XX2R] * t196 - parameters[XY2] * (t272 - t191)
         - (parameters[MX2R] * t197 + parameters[MY2] * t193);
-    const rx90_real_t t298 = rx90_sign(dq[1]);
+    const rx90_real_t t298 = rx90_sign(dq[1]); /* joint j2: coulomb_friction */
     const rx90_real_t t299 = RX90_C(1.0e2) * (parameters[FV2] * (RX90_C(1.0e2) * dq[1])
         + parameters[FC2] * t298) - (t297 - (t289 - RX90_C(0.45) * t296));
     const rx90_real_t t300 = RX90_C(30.0) * input[1] - t299 - t279 * t88 - t282 * t87;
@@ -543,19 +581,19 @@ int rx90_forward_dynamics_derivatives(
     const rx90_real_t t310 = t279 * t4 - t114 * t304 - t88 * t305 - t56 * t306;
     const rx90_real_t t311 = rx90_bounded(t310 - t28 * t307 + t5 * t309);
     ddq[5] = t311;
-    const rx90_real_t t312 = t105 * t71 + t102 * t67;
+    const rx90_real_t t312 = t105 * t71 + t102 * t67; /* link j3: motion */
     const rx90_real_t t313 = dq[0] * t312;
-    const rx90_real_t t314 = t151 - t34 * t313;
-    const rx90_real_t t315 = t105 * t67 - t102 * t71;
+    const rx90_real_t t314 = t151 - t34 * t313; /* link j4: motion */
+    const rx90_real_t t315 = t105 * t67 - t102 * t71; /* link j3: motion */
     const rx90_real_t t316 = dq[0] * t315;
-    const rx90_real_t t317 = dq[3] - t316;
-    const rx90_real_t t318 = t15 * t314 - t13 * t317;
-    const rx90_real_t t319 = t161 + t32 * t313;
-    const rx90_real_t t320 = dq[4] + t319;
-    const rx90_real_t t321 = t1 * t318 - t2 * t320;
+    const rx90_real_t t317 = dq[3] - t316; /* link j4: motion */
+    const rx90_real_t t318 = t15 * t314 - t13 * t317; /* link j5: motion */
+    const rx90_real_t t319 = t161 + t32 * t313; /* link j4: motion */
+    const rx90_real_t t320 = dq[4] + t319; /* link j5: motion */
+    const rx90_real_t t321 = t1 * t318 - t2 * t320; /* link j6: motion */
     const rx90_real_t t322 = parameters[XZ6] * t321;
-    const rx90_real_t t323 = t13 * t314 + t15 * t317;
-    const rx90_real_t t324 = dq[5] + t323;
+    const rx90_real_t t323 = t13 * t314 + t15 * t317; /* link j5: motion */
+    const rx90_real_t t324 = dq[5] + t323; /* link j6: motion */
     const rx90_real_t t325 = parameters[XY6] * t324;
     const rx90_real_t t326 = t322 - t325;
     const rx90_real_t t327 = t2 * t318 + t1 * t320;
@@ -565,7 +603,7 @@ int rx90_forward_dynamics_derivatives(
     const rx90_real_t t331 = parameters[XX6R] + t330;
     const rx90_real_t t332 = t324 * t331 + parameters[XZ6] * t327;
     const rx90_real_t t333 = parameters[YZ6] * t321 - t324 * t330;
-    const rx90_real_t t334 = t2 * (t329 - t326) + t1 * (t332 + t333);
+    const rx90_real_t t334 = t2 * (t329 - t326) + t1 * (t332 + t333); /* link j6: inertia, momentum beyond */
     const rx90_real_t t335 = t2 * t334;
     const rx90_real_t t336 = parameters[XZ5] * t323;
     const rx90_real_t t337 = parameters[XY5] * t320;
@@ -582,68 +620,79 @@ int rx90_forward_dynamics_derivatives(
     const rx90_real_t t348 = t327 * t330 + parameters[XY6] * t321;
     const rx90_real_t t349 = parameters[XX5R] + t345;
     const rx90_real_t t350 = t320 * t349 + parameters[XZ5] * t318 + (t1 * t348 - t2 * t347);
+    /* link j5: inertia, momentum beyond */
     const rx90_real_t t351 = t15 * (t338 - t341) + t13 * (t346 + t350);
     const rx90_real_t t352 = t15 * t351;
     const rx90_real_t t353 = parameters[XZ4] * t319;
     const rx90_real_t t354 = parameters[XY4] * t317;
     const rx90_real_t t355 = t353 + t354 + (t341 + t352);
-    const rx90_real_t t356 = t326 + t335 - (t336 + t340);
+    const rx90_real_t t356 = t326 + t335 - (t336 + t340); /* link j6: inertia, momentum beyond */
     const rx90_real_t t357 = parameters[YZ4] * t314;
-    const rx90_real_t t358 = t354 + t357 + t356;
-    const rx90_real_t t359 = t1 * t334;
+    const rx90_real_t t358 = t354 + t357 + t356; /* link j5: inertia, momentum beyond */
+    const rx90_real_t t359 = t1 * t334; /* link j6: inertia, momentum beyond */
     const rx90_real_t t360 = parameters[ZZ5R] + t345;
     const rx90_real_t t361 = t323 * t360 - parameters[YZ5] * t320 + (t359 - t333);
     const rx90_real_t t362 = parameters[XZ5] * t320 + t318 * t360 + (t1 * t347 + t2 * t348);
     const rx90_real_t t363 = RX90_C(-0.5) * (parameters[XX4R] + parameters[ZZ4R]);
+    /* link j5: inertia, momentum beyond */
     const rx90_real_t t364 = parameters[YZ4] * t319 + t317 * t363 + (t15 * t361 - t13 * t362);
+    /* link j6: inertia, momentum beyond */
     const rx90_real_t t365 = parameters[XY5] * t318 + t323 * t349 + (t332 - t359);
     const rx90_real_t t366 = t318 * t345 + parameters[XY5] * t323 + (t1 * t343 + t2 * t344);
     const rx90_real_t t367 = parameters[XX4R] + t363;
+    /* link j5: inertia, momentum beyond */
     const rx90_real_t t368 = t317 * t367 + parameters[XZ4] * t314 + (t15 * t365 - t13 * t366);
+    /* link j4: inertia, momentum beyond */
     const rx90_real_t t369 = t34 * (t355 + t358) - t32 * (t364 - t368);
     const rx90_real_t t370 = t34 * t369;
-    const rx90_real_t t371 = RX90_C(-0.45) * t147;
-    const rx90_real_t t372 = t78 * t371;
+    const rx90_real_t t371 = RX90_C(-0.45) * t147; /* link j4: velocity of its origin */
+    const rx90_real_t t372 = t78 * t371; /* link j4: inertia, momentum beyond */
     const rx90_real_t t373 = parameters[MY6] * t324;
     const rx90_real_t t374 = parameters[MX6] * t324;
+    /* link j6: inertia, momentum beyond */
     const rx90_real_t t375 = parameters[MY5R] * t320 + (t2 * t373 + t1 * t374);
     const rx90_real_t t376 = parameters[MY6] * t327 + parameters[MX6] * t321;
     const rx90_real_t t377 = parameters[MX5] * t320 - t376;
+    /* link j5: inertia, momentum beyond */
     const rx90_real_t t378 = parameters[MX4] * t319 - parameters[MY4R] * t314 + (t15 * t377 - t13 * t375);
-    const rx90_real_t t379 = RX90_C(-0.45) * t378;
+    const rx90_real_t t379 = RX90_C(-0.45) * t378; /* link j4: inertia, momentum beyond */
     const rx90_real_t t380 = RX90_C(-0.45) * t313;
     const rx90_real_t t381 = t41 * t380;
     const rx90_real_t t382 = t379 - (t372 + t381);
     const rx90_real_t t383 = parameters[XZ3] * t316;
     const rx90_real_t t384 = parameters[XY3] * t147;
     const rx90_real_t t385 = t358 - t370 - t372 - t382 - (t383 + t384);
-    const rx90_real_t t386 = t353 - t357 + (t352 - t338);
+    const rx90_real_t t386 = t353 - t357 + (t352 - t338); /* link j5: inertia, momentum beyond */
     const rx90_real_t t387 = parameters[YZ3] * t313;
-    const rx90_real_t t388 = t384 - t387 - (t382 - (t386 + t379));
-    const rx90_real_t t389 = t13 * t351;
+    const rx90_real_t t388 = t384 - t387 - (t382 - (t386 + t379)); /* link j4: inertia, momentum beyond */
+    const rx90_real_t t389 = t13 * t351; /* link j5: inertia, momentum beyond */
     const rx90_real_t t390 = parameters[ZZ4R] + t363;
     const rx90_real_t t391 = t319 * t390 + parameters[YZ4] * t317 + (t389 - t346);
     const rx90_real_t t392 = parameters[XZ4] * t317 + t314 * t390 + (t13 * t365 + t15 * t366);
     const rx90_real_t t393 = parameters[MY4R] * t317 + (t15 * t375 + t13 * t377);
+    /* link j6: inertia, momentum beyond */
     const rx90_real_t t394 = parameters[MY5R] * t318 + parameters[MX5] * t323 + (t2 * t374 - t1 * t373);
-    const rx90_real_t t395 = parameters[MX4] * t317 + t394;
-    const rx90_real_t t396 = t34 * t393 + t32 * t395;
+    const rx90_real_t t395 = parameters[MX4] * t317 + t394; /* link j5: inertia, momentum beyond */
+    const rx90_real_t t396 = t34 * t393 + t32 * t395; /* link j4: inertia, momentum beyond */
     const rx90_real_t t397 = t34 * t391 + t32 * t392 + (RX90_C(-0.45) * t396 + t49 * t371);
     const rx90_real_t t398 = RX90_C(0.5) * (parameters[XX3R] + parameters[ZZ3R]);
     const rx90_real_t t399 = parameters[YZ3] * t316 - t147 * t398 + t397;
+    /* link j5: inertia, momentum beyond */
     const rx90_real_t t400 = parameters[XY4] * t314 - t319 * t367 - (t350 - t389);
     const rx90_real_t t401 = parameters[XY4] * t319 - t314 * t363 - (t13 * t361 + t15 * t362);
     const rx90_real_t t402 = parameters[XX3R] - t398;
+    /* link j4: inertia, momentum beyond */
     const rx90_real_t t403 = t147 * t402 - parameters[XZ3] * t313 - (t34 * t400 + t32 * t401);
+    /* link j3: inertia, momentum beyond */
     const rx90_real_t t404 = t71 * (t385 - t388) + t67 * (t399 - t403);
     const rx90_real_t t405 = t71 * t404;
-    const rx90_real_t t406 = parameters[MY3R] * t147 + t396;
+    const rx90_real_t t406 = parameters[MY3R] * t147 + t396; /* link j4: inertia, momentum beyond */
     const rx90_real_t t407 = parameters[MX3] * t147 + t378;
-    const rx90_real_t t408 = RX90_C(0.45) * (t71 * t406 + t67 * t407);
-    const rx90_real_t t409 = RX90_C(0.45) * dq[1];
-    const rx90_real_t t410 = t103 * t409;
-    const rx90_real_t t411 = RX90_C(0.45) * t143;
-    const rx90_real_t t412 = t41 * t411;
+    const rx90_real_t t408 = RX90_C(0.45) * (t71 * t406 + t67 * t407); /* link j3: inertia, momentum beyond */
+    const rx90_real_t t409 = RX90_C(0.45) * dq[1]; /* link j3: velocity of its origin */
+    const rx90_real_t t410 = t103 * t409; /* link j3: inertia, momentum beyond */
+    const rx90_real_t t411 = RX90_C(0.45) * t143; /* link j3: velocity of its origin */
+    const rx90_real_t t412 = t41 * t411; /* link j3: inertia, momentum beyond */
     const rx90_real_t t413 = t410 + t412 - t408;
     const rx90_real_t t414 = parameters[XZ2R] * t143;
     const rx90_real_t t415 = parameters[XY2] * dq[1];
@@ -656,45 +705,49 @@ int rx90_forward_dynamics_derivatives(
     const rx90_real_t t422 = RX90_C(0.45) * (t67 * t406 - t71 * t407) + t81 * t409;
     const rx90_real_t t423 = parameters[XX2R] + t420;
     const rx90_real_t t424 = dq[1] * t423 - parameters[XZ2R] * t142 + (t403 + t419 + t422);
+    /* link j2: inertia, momentum beyond */
     const rx90_real_t t425 = t102 * (t102 * (t418 - t416) + t105 * (t421 + t424));
     const rx90_real_t t426 = RX90_C(333.33333333333337) * parameters[FV1]
         + RX90_C(0.06666666666666667) * (t416 + t425);
     const rx90_real_t t427 = rx90_bounded(RX90_C(30.0) * t303);
     const rx90_real_t t428 = t139 * t303;
     const rx90_real_t t429 = rx90_bounded(RX90_C(-30.0) * t428);
-    const rx90_real_t t430 = t32 * t369;
+    const rx90_real_t t430 = t32 * t369; /* link j4: inertia, momentum beyond */
     const rx90_real_t t431 = parameters[XY3] * t313 + t316 * t402 - (t368 - t430 - t78 * t380);
     const rx90_real_t t432 = t32 * t393 - t34 * t395;
     const rx90_real_t t433 = t32 * t391 - t34 * t392 + (RX90_C(-0.45) * t432 + t49 * t380);
     const rx90_real_t t434 = parameters[XY3] * t316 - t313 * t398 + t433;
     const rx90_real_t t435 = parameters[MY3R] * t313 + parameters[MX3] * t316 + t432;
+    /* link j3: inertia, momentum beyond */
     const rx90_real_t t436 = t67 * t434 - t71 * t431 + (RX90_C(0.45) * t435 + t81 * t411);
+    /* link j2: derivatives */
     const rx90_real_t t437 = RX90_C(2.0) * (t143 * t423 - parameters[XY2] * t142 + t436);
+    /* link j3: inertia, momentum beyond */
     const rx90_real_t t438 = parameters[XY2] * t143 - t142 * t420 - (t67 * t431 + t71 * t434 + t103 * t411);
-    const rx90_real_t t439 = RX90_C(2.0) * t438;
+    const rx90_real_t t439 = RX90_C(2.0) * t438; /* link j2: derivatives */
     const rx90_real_t t440 = RX90_C(0.03333333333333333) * (t105 * t437 + t102 * t439);
     const rx90_real_t t441 = t303 * (t133 + t85 * t139);
     const rx90_real_t t442 = rx90_bounded(RX90_C(-30.0) * t441);
-    const rx90_real_t t443 = RX90_C(2.0) * t431;
+    const rx90_real_t t443 = RX90_C(2.0) * t431; /* link j3: derivatives */
     const rx90_real_t t444 = RX90_C(2.0) * t434;
-    const rx90_real_t t445 = RX90_C(0.9) * t143;
-    const rx90_real_t t446 = t67 * t444 - t71 * t443 + t81 * t445;
+    const rx90_real_t t445 = RX90_C(0.9) * t143; /* link j6: derivatives */
+    const rx90_real_t t446 = t67 * t444 - t71 * t443 + t81 * t445; /* link j3: derivatives */
     const rx90_real_t t447 = t67 * t443 + t71 * t444 + t103 * t445;
     const rx90_real_t t448 = RX90_C(0.03333333333333333) * (t105 * t446 - t102 * t447);
     const rx90_real_t t449 = t86 + t55 * t85;
     const rx90_real_t t450 = t303 * (t55 * t133 - t125 + t139 * t449);
     const rx90_real_t t451 = rx90_bounded(RX90_C(-10.0) * t450);
-    const rx90_real_t t452 = RX90_C(2.0) * t400;
+    const rx90_real_t t452 = RX90_C(2.0) * t400; /* link j4: derivatives */
     const rx90_real_t t453 = RX90_C(2.0) * t401;
     const rx90_real_t t454 = t34 * t452 + t32 * t453;
     const rx90_real_t t455 = RX90_C(2.0) * t386;
-    const rx90_real_t t456 = RX90_C(-0.9) * t313;
+    const rx90_real_t t456 = RX90_C(-0.9) * t313; /* link j6: derivatives */
     const rx90_real_t t457 = RX90_C(0.9) * t147;
-    const rx90_real_t t458 = t455 - (t78 * t457 - t41 * t456);
-    const rx90_real_t t459 = RX90_C(-0.9) * dq[1];
-    const rx90_real_t t460 = t71 * t454 + t67 * t458 - (t78 * t459 - t68 * t445);
-    const rx90_real_t t461 = t71 * t41;
-    const rx90_real_t t462 = t67 * t454 - t71 * t458 - t461 * t445;
+    const rx90_real_t t458 = t455 - (t78 * t457 - t41 * t456); /* link j4: derivatives */
+    const rx90_real_t t459 = RX90_C(-0.9) * dq[1]; /* link j6: derivatives */
+    const rx90_real_t t460 = t71 * t454 + t67 * t458 - (t78 * t459 - t68 * t445); /* link j4: derivatives */
+    const rx90_real_t t461 = t71 * t41; /* link j4: column of the mass matrix */
+    const rx90_real_t t462 = t67 * t454 - t71 * t458 - t461 * t445; /* link j4: derivatives */
     const rx90_real_t t463 = RX90_C(0.1) * (t105 * t460 + t102 * t462);
     const rx90_real_t t464 = t440 * t429 - t426 * t427 + t448 * t442 + t463 * t451;
     const rx90_real_t t465 = t64 + t21 * t55;
@@ -702,7 +755,7 @@ int rx90_forward_dynamics_derivatives(
     const rx90_real_t t467 = t121 + t21 * t125 - t133 * t465 - t139 * t466;
     const rx90_real_t t468 = t303 * t467;
     const rx90_real_t t469 = rx90_bounded(RX90_C(-10.0) * t468);
-    const rx90_real_t t470 = RX90_C(2.0) * t365;
+    const rx90_real_t t470 = RX90_C(2.0) * t365; /* link j5: derivatives */
     const rx90_real_t t471 = RX90_C(2.0) * t366;
     const rx90_real_t t472 = t13 * t471 - t15 * t470;
     const rx90_real_t t473 = RX90_C(-2.0) * t356;
@@ -710,8 +763,8 @@ int rx90_forward_dynamics_derivatives(
     const rx90_real_t t475 = t13 * t470 + t15 * t471;
     const rx90_real_t t476 = t50 * t456 + t115 * t457 - t475;
     const rx90_real_t t477 = t71 * t474 + t67 * t476 + (t115 * t459 - t74 * t445);
-    const rx90_real_t t478 = t71 * t50 + t67 * t39;
-    const rx90_real_t t479 = t67 * t474 - t71 * t476 - t478 * t445;
+    const rx90_real_t t478 = t71 * t50 + t67 * t39; /* link j5: column of the mass matrix */
+    const rx90_real_t t479 = t67 * t474 - t71 * t476 - t478 * t445; /* link j5: derivatives */
     const rx90_real_t t480 = RX90_C(0.1) * (t105 * t477 + t102 * t479);
     const rx90_real_t t481 = t28 + t5 * t21;
     const rx90_real_t t482 = t56 + t5 * t64 + t55 * t481;
@@ -719,7 +772,7 @@ int rx90_forward_dynamics_derivatives(
     const rx90_real_t t484 = t114 + t5 * t121 + t125 * t481 - t133 * t482;
     const rx90_real_t t485 = t303 * (t484 - t139 * t483);
     const rx90_real_t t486 = RX90_C(-6.0) * t485;
-    const rx90_real_t t487 = RX90_C(2.0) * t347;
+    const rx90_real_t t487 = RX90_C(2.0) * t347; /* link j6: derivatives */
     const rx90_real_t t488 = RX90_C(-2.0) * t348;
     const rx90_real_t t489 = t2 * t487 + t1 * t488;
     const rx90_real_t t490 = RX90_C(2.0) * t339;
@@ -729,8 +782,8 @@ int rx90_forward_dynamics_derivatives(
     const rx90_real_t t494 = t13 * t489 + t15 * t490;
     const rx90_real_t t495 = t46 * t456 + t108 * t457 - t494;
     const rx90_real_t t496 = t71 * t493 + t67 * t495 + (t108 * t459 + t72 * t445);
-    const rx90_real_t t497 = t71 * t46 - t67 * t70;
-    const rx90_real_t t498 = t67 * t493 - t71 * t495 - t497 * t445;
+    const rx90_real_t t497 = t71 * t46 - t67 * t70; /* link j6: column of the mass matrix */
+    const rx90_real_t t498 = t67 * t493 - t71 * t495 - t497 * t445; /* link j6: derivatives */
     const rx90_real_t t499 = RX90_C(0.16666666666666666) * (t105 * t496 + t102 * t498);
     ddq_by_dq[0] = t464 + t480 * t469 + t499 * t486;
     const rx90_real_t t500 = rx90_bounded(RX90_C(30.0) * (t138 + t139 * t428));
@@ -790,43 +843,43 @@ int rx90_forward_dynamics_derivatives(
     ddq_by_input[24] = t528;
     ddq_by_input[30] = t537;
     const rx90_real_t t545 = t305 + t306;
-    const rx90_real_t t546 = t313 * t316;
+    const rx90_real_t t546 = t313 * t316; /* link j3: motion */
     const rx90_real_t t547 = t546 + t545;
     const rx90_real_t t548 = t304 * t312;
     const rx90_real_t t549 = t147 * t316;
     const rx90_real_t t550 = t549 - t548;
     const rx90_real_t t551 = t549 + t550;
     const rx90_real_t t552 = t34 * t547 - t32 * t551;
-    const rx90_real_t t553 = t314 * t317;
+    const rx90_real_t t553 = t314 * t317; /* link j4: motion */
     const rx90_real_t t554 = t552 - t553;
     const rx90_real_t t555 = t309 + t554;
-    const rx90_real_t t556 = t318 * t323;
+    const rx90_real_t t556 = t318 * t323; /* link j5: motion */
     const rx90_real_t t557 = t556 + t555;
     const rx90_real_t t558 = t304 * t315;
-    const rx90_real_t t559 = t147 * t313;
+    const rx90_real_t t559 = t147 * t313; /* link j3: motion */
     const rx90_real_t t560 = t559 + t558;
     const rx90_real_t t561 = t560 - t307;
-    const rx90_real_t t562 = t314 * t319;
+    const rx90_real_t t562 = t314 * t319; /* link j4: motion */
     const rx90_real_t t563 = t562 + t561;
     const rx90_real_t t564 = t32 * t547 + t34 * t551;
     const rx90_real_t t565 = t319 * t317;
     const rx90_real_t t566 = t565 + t564;
     const rx90_real_t t567 = t565 + t566;
     const rx90_real_t t568 = t13 * t563 + t15 * t567;
-    const rx90_real_t t569 = t323 * t320;
+    const rx90_real_t t569 = t323 * t320; /* link j5: motion */
     const rx90_real_t t570 = t568 - t569;
     const rx90_real_t t571 = t570 - t569;
     const rx90_real_t t572 = t1 * t557 + t2 * t571;
-    const rx90_real_t t573 = t321 * t324;
+    const rx90_real_t t573 = t321 * t324; /* link j6: motion */
     const rx90_real_t t574 = t572 - t573;
     const rx90_real_t t575 = t2 * t557 - t1 * t571;
     const rx90_real_t t576 = t327 * t324;
     const rx90_real_t t577 = t575 - t576 - t576;
     const rx90_real_t t578 = t15 * t563 - t13 * t567;
-    const rx90_real_t t579 = t318 * t320;
+    const rx90_real_t t579 = t318 * t320; /* link j5: motion */
     const rx90_real_t t580 = t578 - t579;
     const rx90_real_t t581 = t580 - t311;
-    const rx90_real_t t582 = t327 * t321;
+    const rx90_real_t t582 = t327 * t321; /* link j6: motion */
     const rx90_real_t t583 = t582 + t581;
     const rx90_real_t t584 = parameters[XX6R] * t574 - parameters[ZZ6] * t573 + parameters[XY6] * t577
         + parameters[XZ6] * t583;
@@ -842,14 +895,14 @@ int rx90_forward_dynamics_derivatives(
     const rx90_real_t t594 = t593 + RX90_C(0.45) * t551;
     const rx90_real_t t595 = t32 * t594 - t34 * t590;
     const rx90_real_t t596 = t205 + t71 * t588;
-    const rx90_real_t t597 = t313 * t313;
-    const rx90_real_t t598 = t208 + t597;
+    const rx90_real_t t597 = t313 * t313; /* link j3: motion */
+    const rx90_real_t t598 = t208 + t597; /* link j4: motion */
     const rx90_real_t t599 = RX90_C(-0.45) * t598 + t596;
     const rx90_real_t t600 = t15 * t599 - t13 * t595;
     const rx90_real_t t601 = parameters[YZ6] * (t586 - t585) + t584 - parameters[MY6] * t600;
     const rx90_real_t t602 = t581 - t582;
     const rx90_real_t t603 = t573 - t574;
-    const rx90_real_t t604 = t327 * t327;
+    const rx90_real_t t604 = t327 * t327; /* link j6: motion */
     const rx90_real_t t605 = parameters[XZ6] * (t604 - t586) + (t214 * t576 - parameters[XY6] * t603
         + parameters[YZ6] * t602);
     const rx90_real_t t606 = t605 + parameters[MX6] * t600;
@@ -857,7 +910,7 @@ int rx90_forward_dynamics_derivatives(
     const rx90_real_t t608 = t556 - t555;
     const rx90_real_t t609 = parameters[XX5R] * t570 - parameters[ZZ5R] * t569 + parameters[XY5] * t607
         + parameters[XZ5] * t608;
-    const rx90_real_t t610 = t323 * t323;
+    const rx90_real_t t610 = t323 * t323; /* link j5: motion */
     const rx90_real_t t611 = t320 * t320;
     const rx90_real_t t612 = t32 * t590 + t34 * t594;
     const rx90_real_t t613 = parameters[YZ5] * (t611 - t610) + t609 + parameters[MY5R] * t612 + (t2 * t601
@@ -877,7 +930,7 @@ int rx90_forward_dynamics_derivatives(
     const rx90_real_t t623 = t562 - t561;
     const rx90_real_t t624 = parameters[ZZ4R] * t565 + parameters[XX4R] * t566 + parameters[XY4] * t622
         - parameters[XZ4] * t623;
-    const rx90_real_t t625 = t319 * t319;
+    const rx90_real_t t625 = t319 * t319; /* link j4: motion */
     const rx90_real_t t626 = t317 * t317;
     const rx90_real_t t627 = parameters[YZ4] * (t625 - t626) - t624 + parameters[MY4R] * t599 + (t13 * t621
         - t15 * t613);
@@ -904,7 +957,7 @@ int rx90_forward_dynamics_derivatives(
     const rx90_real_t t642 = t545 - t546;
     const rx90_real_t t643 = parameters[ZZ3R] * t549 + parameters[XX3R] * t550 + parameters[XY3] * t641
         - parameters[XZ3] * t642;
-    const rx90_real_t t644 = t316 * t316;
+    const rx90_real_t t644 = t316 * t316; /* link j3: motion */
     const rx90_real_t t645 = t34 * t627 + t32 * t632 + RX90_C(0.45) * t640 - (parameters[MY3R] * t593
         + (parameters[YZ3] * (t208 - t644) + t643));
     const rx90_real_t t646 = parameters[XX4R] * t562 + parameters[ZZ4R] * t561 + parameters[YZ4] * t552
@@ -920,7 +973,7 @@ int rx90_forward_dynamics_derivatives(
     const rx90_real_t t652 = t265 + t651;
     const rx90_real_t t653 = t271 - parameters[XY2] * (t265 + t652) + parameters[YZ2] * (t196 - t305);
     const rx90_real_t t654 = t272 + t191;
-    const rx90_real_t t655 = RX90_C(2.0) * t143;
+    const rx90_real_t t655 = RX90_C(2.0) * t143; /* link j2: derivatives */
     const rx90_real_t t656 = RX90_C(-2.0) * t142;
     const rx90_real_t t657 = t416 * t655 + t421 * t656 + (t134 * t654 + (t101 * t591 - t104 * t651));
     const rx90_real_t t658 = t105 * (t273 + t653 + t650 + (t41 * t193 + t657));
@@ -953,30 +1006,37 @@ int rx90_forward_dynamics_derivatives(
     const rx90_real_t t679 = t538 * t665 - t537 * t662 + t539 * t667 + t540 * t669;
     ddq_by_q[31] = t679 + t542 * t672 + t544 * t674;
     const rx90_real_t t680 = t398 - parameters[ZZ3R];
+    /* link j4: inertia, momentum beyond */
     const rx90_real_t t681 = t316 * t680 - parameters[YZ3] * t147 + (t364 + t430 + t41 * t371);
     const rx90_real_t t682 = parameters[XZ3] * t147 + t313 * t680 + (t32 * t400 - t34 * t401);
     const rx90_real_t t683 = parameters[ZZ2R] + t420;
+    /* link j3: inertia, momentum beyond */
     const rx90_real_t t684 = t143 * t683 - parameters[YZ2] * dq[1] + (t71 * t681 - t67 * t682);
+    /* link j2: derivatives */
     const rx90_real_t t685 = t105 * (RX90_C(2.0) * t684 + (t101 * t655 + t104 * t656));
+    /* link j3: inertia, momentum beyond */
     const rx90_real_t t686 = parameters[XZ2R] * dq[1] - t142 * t683 + (t67 * t681 + t71 * t682 + t41 * t409);
+    /* link j2: derivatives */
     const rx90_real_t t687 = t102 * (RX90_C(2.0) * t686 + (t104 * t655 + t100 * t656));
     const rx90_real_t t688 = RX90_C(0.03333333333333333) * (t685 + t687);
+    /* link j4: inertia, momentum beyond */
     const rx90_real_t t689 = t382 + (t355 - t370 + t381) - (t383 + t387);
+    /* link j2: derivatives */
     const rx90_real_t t690 = RX90_C(2.0) * (t414 - t417 + (t689 + t412 - t413)) + RX90_C(2.0) * (t134 * t143
         + t135 * t142);
     const rx90_real_t t691 = RX90_C(-333.33333333333337) * parameters[FV2]
         + RX90_C(0.03333333333333333) * t690;
-    const rx90_real_t t692 = RX90_C(2.0) * t689;
+    const rx90_real_t t692 = RX90_C(2.0) * t689; /* link j3: derivatives */
     const rx90_real_t t693 = t692 + t103 * t459 + RX90_C(2.0) * (t129 * t143 + t130 * t142);
     const rx90_real_t t694 = RX90_C(0.03333333333333333) * t693;
-    const rx90_real_t t695 = t32 * t452 - t34 * t453;
+    const rx90_real_t t695 = t32 * t452 - t34 * t453; /* link j4: derivatives */
     const rx90_real_t t696 = t695 - t461 * t459 + RX90_C(2.0) * (t123 * t142 - t122 * t143);
     const rx90_real_t t697 = RX90_C(0.1) * t696;
     const rx90_real_t t698 = t691 * t429 - t688 * t427 + t694 * t442 - t697 * t451;
-    const rx90_real_t t699 = t32 * t472 + t34 * t473 + t39 * t457;
+    const rx90_real_t t699 = t32 * t472 + t34 * t473 + t39 * t457; /* link j5: derivatives */
     const rx90_real_t t700 = t699 + t478 * t459 + RX90_C(2.0) * (t118 * t143 + t119 * t142);
     const rx90_real_t t701 = RX90_C(0.1) * t700;
-    const rx90_real_t t702 = t32 * t491 + t34 * t492 - t70 * t457;
+    const rx90_real_t t702 = t32 * t491 + t34 * t492 - t70 * t457; /* link j6: derivatives */
     const rx90_real_t t703 = t702 + t497 * t459 + RX90_C(2.0) * (t111 * t143 + t112 * t142);
     const rx90_real_t t704 = RX90_C(0.16666666666666666) * t703;
     ddq_by_dq[1] = t698 + t701 * t469 + t704 * t486;
@@ -997,8 +1057,8 @@ int rx90_forward_dynamics_derivatives(
     ddq_by_input[25] = t529;
     ddq_by_input[31] = t538;
     const rx90_real_t t710 = t26 * t548;
-    const rx90_real_t t711 = t597 + t644;
-    const rx90_real_t t712 = RX90_C(2.0) * t316;
+    const rx90_real_t t711 = t597 + t644; /* link j4: motion */
+    const rx90_real_t t712 = RX90_C(2.0) * t316; /* link j3: derivatives */
     const rx90_real_t t713 = RX90_C(2.0) * t313;
     const rx90_real_t t714 = t403 * t712 + t388 * t713 + (t128 * t711 + (t710 - t97 * t558));
     const rx90_real_t t715 = t41 * t596;
@@ -1072,8 +1132,8 @@ int rx90_forward_dynamics_derivatives(
     ddq_by_input[32] = t539;
     const rx90_real_t t762 = t49 * t612;
     const rx90_real_t t763 = t8 * t564;
-    const rx90_real_t t764 = t630 + t625;
-    const rx90_real_t t765 = RX90_C(2.0) * t319;
+    const rx90_real_t t764 = t630 + t625; /* link j5: motion */
+    const rx90_real_t t765 = RX90_C(2.0) * t319; /* link j4: derivatives */
     const rx90_real_t t766 = RX90_C(2.0) * t314;
     const rx90_real_t t767 = t368 * t765 - t358 * t766 + (t33 * t764 - (t763 - t58 * t552));
     const rx90_real_t t768 = t627 - (t767 - t762);
@@ -1146,8 +1206,8 @@ int rx90_forward_dynamics_derivatives(
     ddq_by_input[21] = t522;
     ddq_by_input[27] = t525;
     ddq_by_input[33] = t540;
-    const rx90_real_t t820 = t619 + t610;
-    const rx90_real_t t821 = RX90_C(-2.0) * t323;
+    const rx90_real_t t820 = t619 + t610; /* link j6: motion */
+    const rx90_real_t t821 = RX90_C(-2.0) * t323; /* link j5: derivatives */
     const rx90_real_t t822 = RX90_C(2.0) * t318;
     const rx90_real_t t823 = t338 * t821 + t346 * t822 + (t23 * t568 - t22 * t578 - t12 * t820);
     const rx90_real_t t824 = t621 + (t823 - t35 * t615);
@@ -1230,8 +1290,8 @@ int rx90_forward_dynamics_derivatives(
     ddq_by_input[22] = t525;
     ddq_by_input[28] = t533;
     ddq_by_input[34] = t542;
-    const rx90_real_t t885 = t604 + t585;
-    const rx90_real_t t886 = RX90_C(2.0) * t321;
+    const rx90_real_t t885 = t604 + t585; /* link j6: force and moment */
+    const rx90_real_t t886 = RX90_C(2.0) * t321; /* link j6: derivatives */
     const rx90_real_t t887 = RX90_C(2.0) * t327;
     const rx90_real_t t888 = t326 * t886 + t333 * t887 + (parameters[XY6] * t572 - parameters[XX6R] * t575
         - parameters[XZ6] * t885);

@@ -7,7 +7,7 @@
  * Arm rx90, description 10f0505273a073e2.
  * SPDX-License-Identifier: 0BSD
  *
- * Operations: 3857 (2123 mul, 1734 add, 0 neg), 6 div, 10 trig, 6 other.
+ * Operations: 3857 (2123 mul, 1734 add, 0 neg), 6 div, 10 trig, 6 other calls (sign, select and the like).
  *
  * @param[in]   q             [6]   [rad]                    joint coordinates; norm at most 10000
  * @param[in]   dq            [6]   [rad/s]                  joint velocities; norm at most 100000
@@ -15,9 +15,9 @@
  *                                                           norm at most 1e+09
  * @param[in]   parameters    [78]                           standard parameters; norm at most 1e+09
  * @param[out]  ddq           [6]   [rad/s^2]                joint accelerations
- * @param[out]  ddq_by_q      [36]  [(rad/s^2) per (rad)]    d ddq / d q; 6 x 6, row-major
+ * @param[out]  ddq_by_q      [36]  [(rad/s^2) per rad]      d ddq / d q; 6 x 6, row-major
  * @param[out]  ddq_by_dq     [36]  [(rad/s^2) per (rad/s)]  d ddq / d dq; 6 x 6, row-major
- * @param[out]  ddq_by_input  [36]  [(rad/s^2) per (A)]      d ddq / d input; 6 x 6, row-major
+ * @param[out]  ddq_by_input  [36]  [(rad/s^2) per A]        d ddq / d input; 6 x 6, row-major
  *
  * Coordinates:
  *
@@ -111,11 +111,11 @@
  */
 #include "rx90_private.h"
 
-#if RX90_GENERATION != 0xD1F0D18FUL
+#if RX90_GENERATION != 0x88006983UL
 #error "rx90.h and rx90_forward_dynamics_derivatives_standard.c are of different generations: generate the arm again"
 #endif
 
-int rx90_forward_dynamics_derivatives_standard(
+rx90_status_t rx90_forward_dynamics_derivatives_standard(
     const rx90_real_t q[RX90_N_JOINTS],
     const rx90_real_t dq[RX90_N_JOINTS],
     const rx90_real_t input[RX90_N_JOINTS],
@@ -129,7 +129,7 @@ int rx90_forward_dynamics_derivatives_standard(
         M2, XX3, XY3, XZ3, YY3, YZ3, ZZ3, MX3, MY3, MZ3, M3, XX4, XY4, XZ4, YY4, YZ4, ZZ4, MX4, MY4, MZ4, M4,
         XX5, XY5, XZ5, YY5, YZ5, ZZ5, MX5, MY5, MZ5, M5, XX6, XY6, XZ6, YY6, YZ6, ZZ6, MX6, MY6, MZ6, M6, FV1,
         FC1, IA1, FV2, FC2, IA2, FV3, FC3, IA3, FV4, FC4, IA4, FV5, FC5, IA5, FV6, FC6, IA6 };
-    int status = RX90_STATUS_OK;
+    rx90_status_t status = RX90_STATUS_OK;
 
     if (!rx90_within_joints(q, RX90_C(1.0e8))
         || !rx90_within_joints(dq, RX90_C(1.0e10))
@@ -163,10 +163,11 @@ int rx90_forward_dynamics_derivatives_standard(
         rx90_zero(ddq_by_input, 36);
         return RX90_STATUS_PIVOT;
     }
+    /* link j6: column of the mass matrix */
     const rx90_real_t t3 = t1 * parameters[XZ6] + t2 * parameters[YZ6];
     const rx90_real_t t4 = RX90_C(1.0) / t0;
     const rx90_real_t t5 = t3 * t4;
-    const rx90_real_t t6 = parameters[YY6] - parameters[XX6];
+    const rx90_real_t t6 = parameters[YY6] - parameters[XX6]; /* link j6: inertia of it and all beyond */
     const rx90_real_t t7 = t2 * t6 + parameters[XY6] * (RX90_C(2.0) * t1);
     const rx90_real_t t8 = t2 * t7;
     const rx90_real_t t9 = parameters[ZZ5] + (parameters[XX6] + t8);
@@ -189,15 +190,18 @@ int rx90_forward_dynamics_derivatives_standard(
     }
     const rx90_real_t t13 = parameters[XZ5] + (t1 * t7 - parameters[XY6]);
     const rx90_real_t t15 = parameters[YZ5] - t3;
-    const rx90_real_t t17 = t14 * t13 + t16 * t15;
+    const rx90_real_t t17 = t14 * t13 + t16 * t15; /* link j5: column of the mass matrix */
+    /* link j6: column of the mass matrix */
     const rx90_real_t t18 = t2 * parameters[XZ6] - t1 * parameters[YZ6];
     const rx90_real_t t19 = t14 * t18 + t16 * parameters[ZZ6];
     const rx90_real_t t20 = t17 + t19 * t5;
     const rx90_real_t t21 = RX90_C(1.0) / t11;
     const rx90_real_t t22 = t20 * t21;
+    /* link j6: inertia of it and all beyond */
     const rx90_real_t t23 = parameters[XX5] + (parameters[YY6] - t8);
     const rx90_real_t t24 = parameters[YY5] + parameters[ZZ6];
     const rx90_real_t t25 = parameters[XY5] + t18;
+    /* link j5: inertia of it and all beyond */
     const rx90_real_t t26 = t16 * (t24 - t23) + t25 * (RX90_C(2.0) * t14);
     const rx90_real_t t27 = t16 * t26;
     const rx90_real_t t28 = parameters[ZZ4] + (t23 + t27);
@@ -221,21 +225,23 @@ int rx90_forward_dynamics_derivatives_standard(
     }
     const rx90_real_t t33 = t14 * t26 - t25 - parameters[XZ4];
     const rx90_real_t t35 = parameters[YZ4] - t17;
+    /* link j6: column of the mass matrix */
     const rx90_real_t t37 = t2 * parameters[MY6] + t1 * parameters[MX6];
-    const rx90_real_t t38 = parameters[MZ5] - t37;
-    const rx90_real_t t39 = parameters[MY4] - t38;
+    const rx90_real_t t38 = parameters[MZ5] - t37; /* link j6: inertia of it and all beyond */
+    const rx90_real_t t39 = parameters[MY4] - t38; /* link j5: inertia of it and all beyond */
+    /* link j6: column of the mass matrix */
     const rx90_real_t t40 = t2 * parameters[MX6] - t1 * parameters[MY6];
-    const rx90_real_t t41 = parameters[MX5] + t40;
+    const rx90_real_t t41 = parameters[MX5] + t40; /* link j6: inertia of it and all beyond */
     const rx90_real_t t42 = parameters[MY5] + parameters[MZ6];
-    const rx90_real_t t43 = t16 * t41 - t14 * t42;
-    const rx90_real_t t44 = parameters[MX4] + t43;
-    const rx90_real_t t45 = t36 * t39 + t34 * t44;
+    const rx90_real_t t43 = t16 * t41 - t14 * t42; /* link j5: column of the mass matrix */
+    const rx90_real_t t44 = parameters[MX4] + t43; /* link j5: inertia of it and all beyond */
+    const rx90_real_t t45 = t36 * t39 + t34 * t44; /* link j4: column of the mass matrix */
     const rx90_real_t t46 = t36 * t35 - t34 * t33 - RX90_C(0.45) * t45;
-    const rx90_real_t t47 = t16 * t18 - t14 * parameters[ZZ6];
+    const rx90_real_t t47 = t16 * t18 - t14 * parameters[ZZ6]; /* link j6: column of the mass matrix */
     const rx90_real_t t48 = t16 * t37;
     const rx90_real_t t49 = t36 * t48 + t34 * t40;
     const rx90_real_t t50 = RX90_C(0.45) * t49 - (t34 * t47 + t36 * t3);
-    const rx90_real_t t51 = t16 * t13 - t14 * t15;
+    const rx90_real_t t51 = t16 * t13 - t14 * t15; /* link j5: column of the mass matrix */
     const rx90_real_t t52 = t16 * t42 + t14 * t41;
     const rx90_real_t t53 = t36 * t52;
     const rx90_real_t t54 = t36 * t9 - t34 * t51 + RX90_C(0.45) * t53;
@@ -244,15 +250,16 @@ int rx90_forward_dynamics_derivatives_standard(
     const rx90_real_t t57 = RX90_C(1.0) / t31;
     const rx90_real_t t58 = t56 * t57;
     const rx90_real_t t59 = t50 * t4;
-    const rx90_real_t t60 = t27 - t24 - parameters[XX4];
+    const rx90_real_t t60 = t27 - t24 - parameters[XX4]; /* link j5: inertia of it and all beyond */
     const rx90_real_t t61 = parameters[YY4] + t9;
     const rx90_real_t t62 = t51 - parameters[XY4];
+    /* link j4: inertia of it and all beyond */
     const rx90_real_t t63 = t36 * (t60 + t61) - t62 * (RX90_C(2.0) * t34);
     const rx90_real_t t64 = t36 * t63;
-    const rx90_real_t t65 = parameters[MZ4] + t52;
-    const rx90_real_t t66 = parameters[M5] + parameters[M6];
-    const rx90_real_t t67 = parameters[M4] + t66;
-    const rx90_real_t t68 = RX90_C(0.45) * t67;
+    const rx90_real_t t65 = parameters[MZ4] + t52; /* link j5: inertia of it and all beyond */
+    const rx90_real_t t66 = parameters[M5] + parameters[M6]; /* link j6: inertia of it and all beyond */
+    const rx90_real_t t67 = parameters[M4] + t66; /* link j5: inertia of it and all beyond */
+    const rx90_real_t t68 = RX90_C(0.45) * t67; /* link j4: inertia of it and all beyond */
     const rx90_real_t t69 = RX90_C(0.45) * (t68 + RX90_C(2.0) * t65);
     const rx90_real_t t70 = parameters[ZZ3] + (t64 - t60 + t69);
     const rx90_real_t t71 = t70 + RX90_C(1.0e4) * parameters[IA3];
@@ -273,20 +280,20 @@ int rx90_forward_dynamics_derivatives_standard(
         rx90_zero(ddq_by_input, 36);
         return RX90_STATUS_PIVOT;
     }
-    const rx90_real_t t76 = t75 * t45;
+    const rx90_real_t t76 = t75 * t45; /* link j4: column of the mass matrix */
     const rx90_real_t t77 = t46 + RX90_C(0.45) * t76;
-    const rx90_real_t t78 = t14 * t37;
+    const rx90_real_t t78 = t14 * t37; /* link j6: column of the mass matrix */
     const rx90_real_t t80 = t75 * t49 + t79 * t78;
     const rx90_real_t t81 = t50 + RX90_C(-0.45) * t80;
-    const rx90_real_t t82 = t79 * t43 - t75 * t53;
+    const rx90_real_t t82 = t79 * t43 - t75 * t53; /* link j5: column of the mass matrix */
     const rx90_real_t t83 = t54 + RX90_C(0.45) * t82;
     const rx90_real_t t84 = t83 + t81 * t5;
     const rx90_real_t t85 = t77 + t81 * t30 + t84 * t22;
-    const rx90_real_t t86 = t36 * t44 - t34 * t39;
-    const rx90_real_t t87 = parameters[MX3] + t86;
+    const rx90_real_t t86 = t36 * t44 - t34 * t39; /* link j4: column of the mass matrix */
+    const rx90_real_t t87 = parameters[MX3] + t86; /* link j4: inertia of it and all beyond */
     const rx90_real_t t88 = t65 + t68;
     const rx90_real_t t89 = parameters[MY3] + t88;
-    const rx90_real_t t90 = t75 * t89 - t79 * t87;
+    const rx90_real_t t90 = t75 * t89 - t79 * t87; /* link j3: column of the mass matrix */
     const rx90_real_t t91 = RX90_C(0.45) * t90 - t70;
     const rx90_real_t t92 = t91 + t81 * t59 + t84 * t72 + t85 * t58;
     const rx90_real_t t93 = RX90_C(1.0) / t73;
@@ -294,8 +301,8 @@ int rx90_forward_dynamics_derivatives_standard(
     const rx90_real_t t95 = t85 * t57;
     const rx90_real_t t96 = t84 * t21;
     const rx90_real_t t97 = t81 * t4;
-    const rx90_real_t t98 = parameters[M3] + t67;
-    const rx90_real_t t99 = RX90_C(0.45) * t98;
+    const rx90_real_t t98 = parameters[M3] + t67; /* link j4: inertia of it and all beyond */
+    const rx90_real_t t99 = RX90_C(0.45) * t98; /* link j3: inertia of it and all beyond */
     const rx90_real_t t100 = RX90_C(0.45) * (t99 + RX90_C(-2.0) * t90);
     const rx90_real_t t101 = parameters[ZZ2] + (t70 + t100);
     const rx90_real_t t102 = t101 + RX90_C(1.0e4) * parameters[IA2];
@@ -316,46 +323,50 @@ int rx90_forward_dynamics_derivatives_standard(
         rx90_zero(ddq_by_input, 36);
         return RX90_STATUS_PIVOT;
     }
-    const rx90_real_t t106 = parameters[XX3] + (t61 - t64 + t69);
+    const rx90_real_t t106 = parameters[XX3] + (t61 - t64 + t69); /* link j4: inertia of it and all beyond */
     const rx90_real_t t107 = parameters[YY3] + t28;
-    const rx90_real_t t108 = RX90_C(-0.45) * t86;
+    const rx90_real_t t108 = RX90_C(-0.45) * t86; /* link j4: column of the mass matrix */
     const rx90_real_t t109 = t36 * t33 + t34 * t35 - t108;
-    const rx90_real_t t110 = t109 - parameters[XY3];
+    const rx90_real_t t110 = t109 - parameters[XY3]; /* link j4: inertia of it and all beyond */
+    /* link j3: inertia of it and all beyond */
     const rx90_real_t t111 = t79 * (t106 - t107) - t110 * (RX90_C(-2.0) * t75);
     const rx90_real_t t112 = t79 * t111;
     const rx90_real_t t113 = parameters[XX2] + (t107 + t112);
     const rx90_real_t t114 = parameters[YY2] + (t106 - t112 + t100);
-    const rx90_real_t t116 = t79 * t89 + t75 * t87;
+    const rx90_real_t t116 = t79 * t89 + t75 * t87; /* link j3: column of the mass matrix */
+    /* link j3: inertia of it and all beyond */
     const rx90_real_t t117 = parameters[XY2] + (t75 * t111 - t110 + RX90_C(-0.45) * t116);
+    /* link j2: inertia of it and all beyond */
     const rx90_real_t t119 = t115 * (t115 * (t114 - t113) + t117 * (RX90_C(2.0) * t118));
     const rx90_real_t t120 = parameters[ZZ1] + (t113 + t119) + RX90_C(1.0e4) * parameters[IA1];
-    const rx90_real_t t121 = t34 * t48 - t36 * t40;
+    const rx90_real_t t121 = t34 * t48 - t36 * t40; /* link j6: column of the mass matrix */
     const rx90_real_t t122 = RX90_C(0.45) * t121;
     const rx90_real_t t123 = t36 * t47 - t34 * t3 + t122;
     const rx90_real_t t124 = t75 * t19 - t79 * t123;
     const rx90_real_t t125 = t75 * t123 + t79 * t19 - t122;
     const rx90_real_t t126 = t115 * t125 - t118 * t124;
     const rx90_real_t t127 = t126 * t4;
-    const rx90_real_t t128 = t34 * t52;
+    const rx90_real_t t128 = t34 * t52; /* link j5: column of the mass matrix */
     const rx90_real_t t129 = RX90_C(0.45) * t128;
     const rx90_real_t t130 = t36 * t51 + t34 * t9 + t129;
     const rx90_real_t t131 = t75 * t17 - t79 * t130;
     const rx90_real_t t132 = t75 * t130 + t79 * t17 - t129;
     const rx90_real_t t133 = t115 * t132 - t118 * t131 + t126 * t5;
     const rx90_real_t t134 = t133 * t21;
-    const rx90_real_t t135 = t79 * t109 + t75 * t28;
+    const rx90_real_t t135 = t79 * t109 + t75 * t28; /* link j4: column of the mass matrix */
     const rx90_real_t t136 = t108 + (t75 * t109 - t79 * t28);
     const rx90_real_t t137 = t118 * t135 + t115 * t136 + t126 * t30 + t133 * t22;
     const rx90_real_t t138 = t137 * t57;
     const rx90_real_t t139 = t120 - t126 * t127 - t133 * t134 - t137 * t138;
-    const rx90_real_t t140 = parameters[XZ3] + (t62 + t34 * t63);
+    const rx90_real_t t140 = parameters[XZ3] + (t62 + t34 * t63); /* link j4: inertia of it and all beyond */
     const rx90_real_t t141 = parameters[YZ3] - t46;
-    const rx90_real_t t142 = t75 * t141 - t79 * t140;
+    const rx90_real_t t142 = t75 * t141 - t79 * t140; /* link j3: column of the mass matrix */
     const rx90_real_t t143 = t75 * t140 + t79 * t141;
     const rx90_real_t t144 = t115 * t143 - t118 * t142 - t126 * t59 - t133 * t72;
     const rx90_real_t t145 = t144 - t137 * t58;
     const rx90_real_t t146 = t145 * t93;
-    const rx90_real_t t147 = parameters[MZ3] - t45;
+    const rx90_real_t t147 = parameters[MZ3] - t45; /* link j4: inertia of it and all beyond */
+    /* link j3: inertia of it and all beyond */
     const rx90_real_t t148 = t142 + RX90_C(0.45) * t147 - parameters[XZ2];
     const rx90_real_t t149 = parameters[YZ2] + t143;
     const rx90_real_t t150 = t115 * t149 - t118 * t148 - t126 * t97 - t133 * t96;
@@ -378,82 +389,83 @@ int rx90_forward_dynamics_derivatives_standard(
         rx90_zero(ddq_by_input, 36);
         return RX90_STATUS_PIVOT;
     }
-    const rx90_real_t t156 = t118 * dq[0];
+    const rx90_real_t t156 = t118 * dq[0]; /* link j2: motion */
     const rx90_real_t t157 = t115 * dq[0];
-    const rx90_real_t t158 = t79 * t156 + t75 * t157;
+    const rx90_real_t t158 = t79 * t156 + t75 * t157; /* link j3: motion */
     const rx90_real_t t159 = t79 * t157 - t75 * t156;
     const rx90_real_t t160 = t158 * t159;
     const rx90_real_t t161 = dq[1] + dq[2];
     const rx90_real_t t162 = t161 * t159;
-    const rx90_real_t t163 = RX90_C(2.0) * t162;
+    const rx90_real_t t163 = RX90_C(2.0) * t162; /* link j4: motion */
     const rx90_real_t t164 = t34 * t163 - t36 * t160;
     const rx90_real_t t165 = t34 * t161;
     const rx90_real_t t166 = t36 * t158 - t165;
     const rx90_real_t t167 = dq[3] + t159;
     const rx90_real_t t168 = t166 * t167;
     const rx90_real_t t169 = t164 + t168;
-    const rx90_real_t t170 = t16 * t166 + t14 * t167;
+    const rx90_real_t t170 = t16 * t166 + t14 * t167; /* link j5: motion */
     const rx90_real_t t171 = t16 * t167 - t14 * t166;
     const rx90_real_t t172 = t170 * t171;
-    const rx90_real_t t173 = t169 - t172;
-    const rx90_real_t t174 = t34 * t160 + t36 * t163;
+    const rx90_real_t t173 = t169 - t172; /* link j6: motion */
+    const rx90_real_t t174 = t34 * t160 + t36 * t163; /* link j4: motion */
     const rx90_real_t t175 = t36 * t161;
     const rx90_real_t t176 = t175 + t34 * t158;
     const rx90_real_t t177 = t176 * t167;
     const rx90_real_t t178 = t174 - t177;
-    const rx90_real_t t179 = t178 - t177;
-    const rx90_real_t t180 = t166 * t176;
-    const rx90_real_t t181 = t161 * t158;
-    const rx90_real_t t182 = t180 - t181;
+    const rx90_real_t t179 = t178 - t177; /* link j5: motion */
+    const rx90_real_t t180 = t166 * t176; /* link j4: motion */
+    const rx90_real_t t181 = t161 * t158; /* link j3: motion */
+    const rx90_real_t t182 = t180 - t181; /* link j5: motion */
     const rx90_real_t t183 = t14 * t182 + t16 * t179;
     const rx90_real_t t184 = dq[4] + t176;
     const rx90_real_t t185 = t171 * t184;
     const rx90_real_t t186 = t183 + t185;
-    const rx90_real_t t187 = t185 + t186;
+    const rx90_real_t t187 = t185 + t186; /* link j6: motion */
     const rx90_real_t t188 = t2 * t187 - t1 * t173;
     const rx90_real_t t189 = t1 * t170 + t2 * t184;
     const rx90_real_t t190 = dq[5] + t171;
     const rx90_real_t t191 = t189 * t190;
     const rx90_real_t t192 = t188 - t191;
-    const rx90_real_t t193 = parameters[ZZ6] - parameters[YY6];
-    const rx90_real_t t194 = t2 * t173 + t1 * t187;
+    const rx90_real_t t193 = parameters[ZZ6] - parameters[YY6]; /* link j6: force and moment */
+    const rx90_real_t t194 = t2 * t173 + t1 * t187; /* link j6: motion */
     const rx90_real_t t195 = t2 * t170 - t1 * t184;
     const rx90_real_t t196 = t195 * t190;
     const rx90_real_t t197 = t194 + t196;
-    const rx90_real_t t198 = t196 + t197;
-    const rx90_real_t t199 = t14 * t179 - t16 * t182;
+    const rx90_real_t t198 = t196 + t197; /* link j6: force and moment */
+    const rx90_real_t t199 = t14 * t179 - t16 * t182; /* link j5: motion */
     const rx90_real_t t200 = t170 * t184;
     const rx90_real_t t201 = t199 + t200;
-    const rx90_real_t t202 = t195 * t189;
-    const rx90_real_t t203 = t201 + t202;
+    const rx90_real_t t202 = t195 * t189; /* link j6: motion */
+    const rx90_real_t t203 = t201 + t202; /* link j6: force and moment */
     const rx90_real_t t204 = t191 * t193 - parameters[XX6] * t192 + parameters[XY6] * t198
         + parameters[XZ6] * t203;
-    const rx90_real_t t205 = t189 * t189;
+    const rx90_real_t t205 = t189 * t189; /* link j6: motion */
     const rx90_real_t t206 = t190 * t190;
-    const rx90_real_t t207 = t157 * t157;
+    const rx90_real_t t207 = t157 * t157; /* link j2: motion */
     const rx90_real_t t208 = dq[1] * dq[1];
     const rx90_real_t t209 = RX90_C(-9.81) * t118;
-    const rx90_real_t t210 = t209 + RX90_C(0.45) * (t207 + t208);
+    const rx90_real_t t210 = t209 + RX90_C(0.45) * (t207 + t208); /* link j3: motion */
     const rx90_real_t t211 = t79 * t210;
-    const rx90_real_t t212 = t156 * t157;
+    const rx90_real_t t212 = t156 * t157; /* link j2: motion */
     const rx90_real_t t213 = RX90_C(9.81) * t115;
-    const rx90_real_t t214 = RX90_C(-0.45) * t212 - t213;
+    const rx90_real_t t214 = RX90_C(-0.45) * t212 - t213; /* link j3: motion */
     const rx90_real_t t215 = t211 + t75 * t214;
-    const rx90_real_t t216 = t215 + RX90_C(-0.45) * t160;
-    const rx90_real_t t217 = dq[1] * t156;
-    const rx90_real_t t218 = RX90_C(0.9) * t217;
-    const rx90_real_t t219 = t218 - RX90_C(-0.9) * t162;
+    const rx90_real_t t216 = t215 + RX90_C(-0.45) * t160; /* link j4: motion */
+    const rx90_real_t t217 = dq[1] * t156; /* link j2: motion */
+    const rx90_real_t t218 = RX90_C(0.9) * t217; /* link j3: motion */
+    const rx90_real_t t219 = t218 - RX90_C(-0.9) * t162; /* link j4: motion */
     const rx90_real_t t220 = t36 * t216 + t34 * t219;
-    const rx90_real_t t221 = t75 * t210;
+    const rx90_real_t t221 = t75 * t210; /* link j3: motion */
     const rx90_real_t t222 = t79 * t214 - t221;
     const rx90_real_t t223 = t158 * t158;
     const rx90_real_t t224 = t161 * t161;
-    const rx90_real_t t225 = t224 + t223;
+    const rx90_real_t t225 = t224 + t223; /* link j4: motion */
     const rx90_real_t t226 = t222 + RX90_C(0.45) * t225;
-    const rx90_real_t t227 = t14 * t220 - t16 * t226;
+    const rx90_real_t t227 = t14 * t220 - t16 * t226; /* link j5: motion */
     const rx90_real_t t228 = t16 * t220 + t14 * t226;
-    const rx90_real_t t229 = t34 * t216 - t36 * t219;
-    const rx90_real_t t230 = t1 * t228 + t2 * t229;
+    const rx90_real_t t229 = t34 * t216 - t36 * t219; /* link j4: motion */
+    const rx90_real_t t230 = t1 * t228 + t2 * t229; /* link j6: motion */
+    /* link j6: force and moment */
     const rx90_real_t t231 = t204 - parameters[YZ6] * (t205 - t206) + (parameters[MZ6] * t230
         - parameters[MY6] * t227);
     const rx90_real_t t232 = parameters[ZZ6] - parameters[XX6];
@@ -461,150 +473,183 @@ int rx90_forward_dynamics_derivatives_standard(
     const rx90_real_t t234 = t202 - t201;
     const rx90_real_t t235 = parameters[XY6] * t233 - (parameters[YY6] * t197 + t196 * t232)
         + parameters[YZ6] * t234;
-    const rx90_real_t t236 = t195 * t195;
+    const rx90_real_t t236 = t195 * t195; /* link j6: motion */
     const rx90_real_t t237 = t2 * t228 - t1 * t229;
+    /* link j6: force and moment */
     const rx90_real_t t238 = t235 + parameters[XZ6] * (t206 - t236) - (parameters[MZ6] * t237
         + parameters[MX6] * t227);
-    const rx90_real_t t239 = parameters[YY5] - parameters[ZZ5];
-    const rx90_real_t t240 = t200 + t201;
+    const rx90_real_t t239 = parameters[YY5] - parameters[ZZ5]; /* link j5: force and moment */
+    const rx90_real_t t240 = t200 + t201; /* link j6: motion */
     const rx90_real_t t241 = t169 + t172;
+    /* link j5: force and moment */
     const rx90_real_t t242 = t185 * t239 - parameters[XX5] * t186 + parameters[XY5] * t240
         - parameters[XZ5] * t241;
-    const rx90_real_t t243 = t171 * t171;
+    const rx90_real_t t243 = t171 * t171; /* link j5: motion */
     const rx90_real_t t244 = t184 * t184;
+    /* link j5: force and moment */
     const rx90_real_t t245 = t242 + parameters[YZ5] * (t244 - t243) + (parameters[MY5] * t229
         + parameters[MZ5] * t227);
-    const rx90_real_t t246 = t245 + (t2 * t231 + t1 * t238);
+    const rx90_real_t t246 = t245 + (t2 * t231 + t1 * t238); /* link j6: what it passes on */
+    /* link j6: force and moment */
     const rx90_real_t t247 = parameters[XZ6] * t188 - (parameters[ZZ6] * t201 + t6 * t202
         + parameters[YZ6] * t194);
     const rx90_real_t t248 = t247 + parameters[XY6] * (t236 - t205) + (parameters[MX6] * t230
         + parameters[MY6] * t237);
-    const rx90_real_t t249 = parameters[ZZ5] - parameters[XX5];
+    const rx90_real_t t249 = parameters[ZZ5] - parameters[XX5]; /* link j5: force and moment */
     const rx90_real_t t250 = parameters[XY5] * t187 - (parameters[YY5] * t201 + t200 * t249)
         + parameters[YZ5] * t173;
-    const rx90_real_t t251 = t170 * t170;
+    const rx90_real_t t251 = t170 * t170; /* link j5: motion */
+    /* link j5: force and moment */
     const rx90_real_t t252 = t250 + parameters[XZ5] * (t244 - t251) + (parameters[MX5] * t229
         - parameters[MZ5] * t228);
-    const rx90_real_t t253 = t252 + t248;
-    const rx90_real_t t254 = parameters[ZZ4] - parameters[YY4];
-    const rx90_real_t t255 = t168 + t169;
+    const rx90_real_t t253 = t252 + t248; /* link j6: what it passes on */
+    const rx90_real_t t254 = parameters[ZZ4] - parameters[YY4]; /* link j4: force and moment */
+    const rx90_real_t t255 = t168 + t169; /* link j5: motion */
     const rx90_real_t t256 = t181 + t180;
+    /* link j4: force and moment */
     const rx90_real_t t257 = t177 * t254 - parameters[XX4] * t178 + parameters[XY4] * t255
         + parameters[XZ4] * t256;
-    const rx90_real_t t258 = t176 * t176;
+    const rx90_real_t t258 = t176 * t176; /* link j4: motion */
     const rx90_real_t t259 = t167 * t167;
+    /* link j4: force and moment */
     const rx90_real_t t260 = t257 + parameters[YZ4] * (t259 - t258) + (parameters[MY4] * t226
         + parameters[MZ4] * t229);
-    const rx90_real_t t261 = t260 + (t16 * t246 + t14 * t253);
-    const rx90_real_t t262 = parameters[XX5] - parameters[YY5];
+    const rx90_real_t t261 = t260 + (t16 * t246 + t14 * t253); /* link j5: what it passes on */
+    const rx90_real_t t262 = parameters[XX5] - parameters[YY5]; /* link j5: force and moment */
     const rx90_real_t t263 = t172 * t262 - parameters[ZZ5] * t169 + parameters[YZ5] * t199
         - parameters[XZ5] * t183;
     const rx90_real_t t264 = t263 + parameters[XY5] * (t243 - t251) - (parameters[MX5] * t227
         + parameters[MY5] * t228);
-    const rx90_real_t t265 = t264 + (t2 * t238 - t1 * t231);
-    const rx90_real_t t266 = parameters[ZZ4] - parameters[XX4];
+    const rx90_real_t t265 = t264 + (t2 * t238 - t1 * t231); /* link j6: what it passes on */
+    const rx90_real_t t266 = parameters[ZZ4] - parameters[XX4]; /* link j4: force and moment */
     const rx90_real_t t267 = parameters[XY4] * t179 - (parameters[YY4] * t169 + t168 * t266)
         + parameters[YZ4] * t182;
-    const rx90_real_t t268 = t166 * t166;
+    const rx90_real_t t268 = t166 * t166; /* link j4: motion */
+    /* link j4: force and moment */
     const rx90_real_t t269 = t267 + parameters[XZ4] * (t259 - t268) + (parameters[MX4] * t226
         - parameters[MZ4] * t220);
-    const rx90_real_t t270 = t269 + t265;
+    const rx90_real_t t270 = t269 + t265; /* link j5: what it passes on */
+    /* link j6: force and moment */
     const rx90_real_t t271 = parameters[MX6] * (t205 + t206) + parameters[MY6] * t234
         + parameters[MZ6] * t194;
     const rx90_real_t t272 = parameters[M6] * t237 + t271;
     const rx90_real_t t273 = parameters[MX6] * t203 + parameters[MY6] * (t236 + t206)
         + parameters[MZ6] * t188;
     const rx90_real_t t274 = t273 - parameters[M6] * t230;
+    /* link j5: force and moment */
     const rx90_real_t t275 = parameters[MX5] * (t243 + t244) + parameters[MY5] * t173
         + parameters[MZ5] * t199;
+    /* link j6: what it passes on */
     const rx90_real_t t276 = parameters[M5] * t228 + t275 + (t2 * t272 - t1 * t274);
+    /* link j5: force and moment */
     const rx90_real_t t277 = parameters[MX5] * t241 - parameters[MY5] * (t251 + t244)
         - parameters[MZ5] * t183;
+    /* link j6: force and moment */
     const rx90_real_t t278 = parameters[MX6] * t198 + parameters[MY6] * t233 - parameters[MZ6] * (t236
         + t205);
+    /* link j6: what it passes on */
     const rx90_real_t t279 = parameters[M5] * t227 + t277 + (parameters[M6] * t227 + t278);
+    /* link j4: force and moment */
     const rx90_real_t t280 = parameters[MX4] * (t258 + t259) + parameters[MY4] * t182
         + parameters[MZ4] * t164;
+    /* link j5: what it passes on */
     const rx90_real_t t281 = parameters[M4] * t220 + t280 + (t16 * t276 + t14 * t279);
+    /* link j5: force and moment */
     const rx90_real_t t282 = parameters[MX5] * t240 + parameters[MY5] * t187 - parameters[MZ5] * (t251
         + t243);
+    /* link j6: what it passes on */
     const rx90_real_t t283 = t282 - parameters[M5] * t229 + (t1 * t272 + t2 * t274);
+    /* link j4: force and moment */
     const rx90_real_t t284 = parameters[MX4] * t256 + parameters[MY4] * (t268 + t259)
         + parameters[MZ4] * t174;
-    const rx90_real_t t285 = t284 - parameters[M4] * t229 + t283;
-    const rx90_real_t t286 = t34 * t281 + t36 * t285;
-    const rx90_real_t t287 = parameters[ZZ3] - parameters[YY3];
-    const rx90_real_t t288 = RX90_C(2.0) * t181;
+    const rx90_real_t t285 = t284 - parameters[M4] * t229 + t283; /* link j5: what it passes on */
+    const rx90_real_t t286 = t34 * t281 + t36 * t285; /* link j4: what it passes on */
+    const rx90_real_t t287 = parameters[ZZ3] - parameters[YY3]; /* link j3: force and moment */
+    const rx90_real_t t288 = RX90_C(2.0) * t181; /* link j4: motion */
+    /* link j3: force and moment */
     const rx90_real_t t289 = parameters[XY3] * t288 - (parameters[XX3] * t162 + t162 * t287)
         - parameters[XZ3] * t160;
-    const rx90_real_t t290 = t159 * t159;
+    const rx90_real_t t290 = t159 * t159; /* link j3: motion */
+    /* link j3: force and moment */
     const rx90_real_t t291 = t289 + parameters[YZ3] * (t224 - t290) - (parameters[MY3] * t218
         + parameters[MZ3] * t222);
+    /* link j4: what it passes on */
     const rx90_real_t t292 = t291 + (t36 * t261 + t34 * t270 + RX90_C(-0.45) * t286);
-    const rx90_real_t t293 = parameters[YY4] - parameters[XX4];
+    const rx90_real_t t293 = parameters[YY4] - parameters[XX4]; /* link j4: force and moment */
     const rx90_real_t t294 = parameters[ZZ4] * t181 + t180 * t293 + parameters[YZ4] * t164
         - parameters[XZ4] * t174;
     const rx90_real_t t295 = t294 - parameters[XY4] * (t268 - t258) - (parameters[MX4] * t229
         + parameters[MY4] * t220);
-    const rx90_real_t t296 = t295 + (t14 * t246 - t16 * t253);
-    const rx90_real_t t297 = parameters[ZZ3] - parameters[XX3];
+    const rx90_real_t t296 = t295 + (t14 * t246 - t16 * t253); /* link j5: what it passes on */
+    const rx90_real_t t297 = parameters[ZZ3] - parameters[XX3]; /* link j3: force and moment */
     const rx90_real_t t298 = parameters[YY3] * t181 + t181 * t297 - parameters[XY3] * t163
         + parameters[YZ3] * t160;
     const rx90_real_t t299 = t298 - parameters[XZ3] * (t224 - t223) + (parameters[MZ3] * t215
         + parameters[MX3] * t218);
-    const rx90_real_t t300 = t299 + t296;
-    const rx90_real_t t301 = dq[1] * t157;
-    const rx90_real_t t302 = t301 * (parameters[YY2] - parameters[ZZ2]);
+    const rx90_real_t t300 = t299 + t296; /* link j4: what it passes on */
+    const rx90_real_t t301 = dq[1] * t157; /* link j2: motion */
+    const rx90_real_t t302 = t301 * (parameters[YY2] - parameters[ZZ2]); /* link j2: force and moment */
     const rx90_real_t t303 = t302 - t301 * parameters[XX2] + RX90_C(2.0) * t217 * parameters[XY2]
         - t212 * parameters[XZ2];
     const rx90_real_t t304 = (t207 - t208) * parameters[YZ2];
     const rx90_real_t t305 = t213 * parameters[MZ2];
-    const rx90_real_t t306 = t303 - t304 + t305 + (t79 * t292 - t75 * t300);
+    const rx90_real_t t306 = t303 - t304 + t305 + (t79 * t292 - t75 * t300); /* link j3: what it passes on */
+    /* link j3: force and moment */
     const rx90_real_t t307 = parameters[MX3] * t288 + parameters[MY3] * t163 - parameters[MZ3] * (t223
         + t290);
+    /* link j3: what it passes on */
     const rx90_real_t t308 = t75 * t292 + t79 * t300 + RX90_C(0.45) * (parameters[M3] * t218 + t307 + t286);
-    const rx90_real_t t309 = t217 * (parameters[ZZ2] - parameters[XX2]);
+    const rx90_real_t t309 = t217 * (parameters[ZZ2] - parameters[XX2]); /* link j2: force and moment */
     const rx90_real_t t310 = t217 * parameters[YY2] + t309 + RX90_C(-2.0) * t301 * parameters[XY2]
         + t212 * parameters[YZ2];
-    const rx90_real_t t311 = t156 * t156;
-    const rx90_real_t t312 = (t311 - t208) * parameters[XZ2];
+    const rx90_real_t t311 = t156 * t156; /* link j2: motion */
+    const rx90_real_t t312 = (t311 - t208) * parameters[XZ2]; /* link j2: force and moment */
     const rx90_real_t t313 = t209 * parameters[MZ2];
+    /* link j2: what it passes on */
     const rx90_real_t t314 = t118 * t306 + t115 * (t310 + t312 + t313 + t308);
-    const rx90_real_t t315 = rx90_sign(dq[0]);
+    const rx90_real_t t315 = rx90_sign(dq[0]); /* joint j1: coulomb_friction */
     const rx90_real_t t316 = RX90_C(1.0e2) * (RX90_C(-1.0e2) * dq[0] * parameters[FV1]
         - t315 * parameters[FC1]) + t314;
-    const rx90_real_t t317 = rx90_sign(dq[5]);
+    const rx90_real_t t317 = rx90_sign(dq[5]); /* joint j6: coulomb_friction */
     const rx90_real_t t318 = RX90_C(30.0) * (RX90_C(30.0) * dq[5] * parameters[FV6] + t317 * parameters[FC6])
         + t248;
     const rx90_real_t t319 = RX90_C(6.0) * input[5] - t318;
-    const rx90_real_t t320 = rx90_sign(dq[4]);
+    const rx90_real_t t320 = rx90_sign(dq[4]); /* joint j5: coulomb_friction */
     const rx90_real_t t321 = RX90_C(50.0) * (RX90_C(50.0) * dq[4] * parameters[FV5] + t320 * parameters[FC5])
         - t265;
     const rx90_real_t t322 = RX90_C(10.0) * input[4] - t321 + t319 * t5;
     const rx90_real_t t323 = RX90_C(30.0) * input[0] + t316 - t319 * t127 - t322 * t134;
-    const rx90_real_t t324 = rx90_sign(dq[3]);
+    const rx90_real_t t324 = rx90_sign(dq[3]); /* joint j4: coulomb_friction */
     const rx90_real_t t325 = RX90_C(50.0) * (RX90_C(50.0) * dq[3] * parameters[FV4] + t324 * parameters[FC4])
         - t296;
     const rx90_real_t t326 = RX90_C(10.0) * input[3] - t325 - t319 * t30 - t322 * t22;
-    const rx90_real_t t327 = t34 * t285 - t36 * t281;
+    const rx90_real_t t327 = t34 * t285 - t36 * t281; /* link j4: what it passes on */
+    /* link j3: force and moment */
     const rx90_real_t t328 = parameters[XY3] * (t223 - t290) - t160 * (parameters[XX3] - parameters[YY3])
         - (parameters[MX3] * t222 - parameters[MY3] * t215);
+    /* link j4: what it passes on */
     const rx90_real_t t329 = t328 + (t34 * t261 - t36 * t270 - RX90_C(0.45) * t327);
-    const rx90_real_t t330 = rx90_sign(dq[2]);
+    const rx90_real_t t330 = rx90_sign(dq[2]); /* joint j3: coulomb_friction */
     const rx90_real_t t331 = RX90_C(1.0e2) * (RX90_C(1.0e2) * dq[2] * parameters[FV3]
         + t330 * parameters[FC3]) + t329;
     const rx90_real_t t332 = RX90_C(30.0) * input[2] - t331 - t319 * t59 - t322 * t72;
     const rx90_real_t t333 = t332 + t326 * t58;
+    /* link j3: force and moment */
     const rx90_real_t t334 = parameters[M3] * t215 + (parameters[MX3] * (t224 + t290)
         - parameters[MY3] * t160);
+    /* link j4: force and moment */
     const rx90_real_t t335 = parameters[MZ4] * (t268 + t258) - (parameters[MX4] * t255
         + parameters[MY4] * t179);
+    /* link j5: what it passes on */
     const rx90_real_t t336 = parameters[M4] * t226 + t335 - (t16 * t279 - t14 * t276);
+    /* link j4: what it passes on */
     const rx90_real_t t337 = parameters[M3] * t222 + (parameters[MY3] * t225 - parameters[MX3] * t160) + t336;
+    /* link j3: what it passes on */
     const rx90_real_t t338 = t329 + RX90_C(0.45) * (t75 * (t327 - t334) - t79 * t337);
+    /* link j2: force and moment */
     const rx90_real_t t339 = t212 * (parameters[XX2] - parameters[YY2]) - (t311 - t207) * parameters[XY2]
         - (t213 * parameters[MX2] + t209 * parameters[MY2]);
-    const rx90_real_t t340 = rx90_sign(dq[1]);
+    const rx90_real_t t340 = rx90_sign(dq[1]); /* joint j2: coulomb_friction */
     const rx90_real_t t341 = RX90_C(1.0e2) * (RX90_C(1.0e2) * dq[1] * parameters[FV2]
         + t340 * parameters[FC2]) - (t339 - t338);
     const rx90_real_t t342 = RX90_C(30.0) * input[1] - t341 - t319 * t97 - t322 * t96;
@@ -625,19 +670,19 @@ int rx90_forward_dynamics_derivatives_standard(
     const rx90_real_t t352 = t319 * t4 - t127 * t346 - t97 * t347 - t59 * t348;
     const rx90_real_t t353 = rx90_bounded(t352 - t30 * t349 + t5 * t351);
     ddq[5] = t353;
-    const rx90_real_t t354 = t118 * t79 + t115 * t75;
+    const rx90_real_t t354 = t118 * t79 + t115 * t75; /* link j3: motion */
     const rx90_real_t t355 = dq[0] * t354;
-    const rx90_real_t t356 = t36 * t355 - t165;
-    const rx90_real_t t357 = t118 * t75 - t115 * t79;
+    const rx90_real_t t356 = t36 * t355 - t165; /* link j4: motion */
+    const rx90_real_t t357 = t118 * t75 - t115 * t79; /* link j3: motion */
     const rx90_real_t t358 = dq[0] * t357;
-    const rx90_real_t t359 = dq[3] - t358;
-    const rx90_real_t t360 = t16 * t356 + t14 * t359;
-    const rx90_real_t t361 = t34 * t355 + t175;
-    const rx90_real_t t362 = dq[4] + t361;
-    const rx90_real_t t363 = t1 * t360 + t2 * t362;
+    const rx90_real_t t359 = dq[3] - t358; /* link j4: motion */
+    const rx90_real_t t360 = t16 * t356 + t14 * t359; /* link j5: motion */
+    const rx90_real_t t361 = t34 * t355 + t175; /* link j4: motion */
+    const rx90_real_t t362 = dq[4] + t361; /* link j5: motion */
+    const rx90_real_t t363 = t1 * t360 + t2 * t362; /* link j6: motion */
     const rx90_real_t t364 = t363 * parameters[XZ6];
-    const rx90_real_t t365 = t14 * t356 - t16 * t359;
-    const rx90_real_t t366 = dq[5] - t365;
+    const rx90_real_t t365 = t14 * t356 - t16 * t359; /* link j5: motion */
+    const rx90_real_t t366 = dq[5] - t365; /* link j6: motion */
     const rx90_real_t t367 = t366 * parameters[XY6];
     const rx90_real_t t368 = t364 + t367;
     const rx90_real_t t369 = t2 * t360 - t1 * t362;
@@ -648,7 +693,7 @@ int rx90_forward_dynamics_derivatives_standard(
     const rx90_real_t t374 = t366 * t373 - t369 * parameters[XZ6];
     const rx90_real_t t375 = parameters[YY6] + t372;
     const rx90_real_t t376 = t363 * parameters[YZ6] + t366 * t375;
-    const rx90_real_t t377 = t2 * (t368 + t371) + t1 * (t374 - t376);
+    const rx90_real_t t377 = t2 * (t368 + t371) + t1 * (t374 - t376); /* link j6: inertia, momentum beyond */
     const rx90_real_t t378 = t2 * t377;
     const rx90_real_t t379 = t365 * parameters[XZ5];
     const rx90_real_t t380 = t362 * parameters[XY5];
@@ -666,70 +711,83 @@ int rx90_forward_dynamics_derivatives_standard(
     const rx90_real_t t392 = t369 * t375 + t363 * parameters[XY6];
     const rx90_real_t t393 = parameters[XX5] + t388;
     const rx90_real_t t394 = t362 * t393 - t360 * parameters[XZ5] + (t2 * t391 - t1 * t392);
+    /* link j5: inertia, momentum beyond */
     const rx90_real_t t395 = t16 * (t381 + t384) + t14 * (t394 - t390);
     const rx90_real_t t396 = t16 * t395;
     const rx90_real_t t397 = t361 * parameters[XZ4];
     const rx90_real_t t398 = t359 * parameters[XY4];
     const rx90_real_t t399 = t397 + t398 + (t396 - t384);
-    const rx90_real_t t400 = t379 + t383 + (t378 - t368);
+    const rx90_real_t t400 = t379 + t383 + (t378 - t368); /* link j6: inertia, momentum beyond */
     const rx90_real_t t401 = t356 * parameters[YZ4];
-    const rx90_real_t t402 = t398 - t401 + t400;
-    const rx90_real_t t403 = t1 * t377;
+    const rx90_real_t t402 = t398 - t401 + t400; /* link j5: inertia, momentum beyond */
+    const rx90_real_t t403 = t1 * t377; /* link j6: inertia, momentum beyond */
     const rx90_real_t t404 = parameters[ZZ5] + t388;
     const rx90_real_t t405 = t376 + t403 - (t365 * t404 + t362 * parameters[YZ5]);
     const rx90_real_t t406 = t360 * t404 - t362 * parameters[XZ5] + (t1 * t391 + t2 * t392);
     const rx90_real_t t407 = RX90_C(-0.5) * (parameters[ZZ4] + (parameters[XX4] + parameters[YY4]));
     const rx90_real_t t408 = parameters[YY4] + t407;
+    /* link j5: inertia, momentum beyond */
     const rx90_real_t t409 = t361 * parameters[YZ4] + t359 * t408 + (t16 * t405 + t14 * t406);
+    /* link j6: inertia, momentum beyond */
     const rx90_real_t t410 = t360 * parameters[XY5] + t365 * t393 + (t403 - t374);
     const rx90_real_t t411 = t360 * t389 + t365 * parameters[XY5] + (t1 * t386 - t2 * t387);
     const rx90_real_t t412 = parameters[XX4] + t407;
+    /* link j5: inertia, momentum beyond */
     const rx90_real_t t413 = t359 * t412 - t356 * parameters[XZ4] - (t16 * t410 - t14 * t411);
+    /* link j4: inertia, momentum beyond */
     const rx90_real_t t414 = t36 * (t399 + t402) - t34 * (t409 - t413);
     const rx90_real_t t415 = t36 * t414;
-    const rx90_real_t t416 = RX90_C(-0.45) * t161;
-    const rx90_real_t t417 = t86 * t416;
+    const rx90_real_t t416 = RX90_C(-0.45) * t161; /* link j4: velocity of its origin */
+    const rx90_real_t t417 = t86 * t416; /* link j4: inertia, momentum beyond */
     const rx90_real_t t418 = t363 * parameters[MZ6] + t366 * parameters[MY6];
     const rx90_real_t t419 = t366 * parameters[MX6] - t369 * parameters[MZ6];
+    /* link j6: inertia, momentum beyond */
     const rx90_real_t t420 = t365 * parameters[MZ5] + t362 * parameters[MY5] + (t2 * t418 + t1 * t419);
     const rx90_real_t t421 = t369 * parameters[MY6] + t363 * parameters[MX6];
     const rx90_real_t t422 = t362 * parameters[MX5] - t360 * parameters[MZ5] + t421;
+    /* link j5: inertia, momentum beyond */
     const rx90_real_t t423 = t356 * parameters[MY4] + t361 * parameters[MX4] + (t16 * t422 - t14 * t420);
-    const rx90_real_t t424 = RX90_C(0.45) * t423;
+    const rx90_real_t t424 = RX90_C(0.45) * t423; /* link j4: inertia, momentum beyond */
     const rx90_real_t t425 = RX90_C(-0.45) * t355;
     const rx90_real_t t426 = t45 * t425;
     const rx90_real_t t427 = t424 + (t417 + t426);
     const rx90_real_t t428 = t358 * parameters[XZ3];
     const rx90_real_t t429 = t161 * parameters[XY3];
     const rx90_real_t t430 = t427 + (t402 - t415 - t417) - (t428 + t429);
-    const rx90_real_t t431 = t397 + t401 - (t381 - t396);
+    const rx90_real_t t431 = t397 + t401 - (t381 - t396); /* link j5: inertia, momentum beyond */
     const rx90_real_t t432 = t355 * parameters[YZ3];
-    const rx90_real_t t433 = t429 - t432 + (t427 + (t431 - t424));
-    const rx90_real_t t434 = t14 * t395;
+    const rx90_real_t t433 = t429 - t432 + (t427 + (t431 - t424)); /* link j4: inertia, momentum beyond */
+    const rx90_real_t t434 = t14 * t395; /* link j5: inertia, momentum beyond */
     const rx90_real_t t435 = parameters[ZZ4] + t407;
     const rx90_real_t t436 = t361 * t435 + t359 * parameters[YZ4] + (t390 + t434);
     const rx90_real_t t437 = t359 * parameters[XZ4] - t356 * t435 - (t14 * t410 + t16 * t411);
     const rx90_real_t t438 = t361 * parameters[MZ4] + t359 * parameters[MY4] + (t16 * t420 + t14 * t422);
+    /* link j6: inertia, momentum beyond */
     const rx90_real_t t439 = t2 * t419 - t1 * t418 - (t360 * parameters[MY5] + t365 * parameters[MX5]);
+    /* link j5: inertia, momentum beyond */
     const rx90_real_t t440 = t359 * parameters[MX4] - t356 * parameters[MZ4] + t439;
-    const rx90_real_t t441 = t36 * t438 + t34 * t440;
+    const rx90_real_t t441 = t36 * t438 + t34 * t440; /* link j4: inertia, momentum beyond */
     const rx90_real_t t442 = t36 * t436 + t34 * t437 + (RX90_C(-0.45) * t441 + t88 * t416);
     const rx90_real_t t443 = RX90_C(0.5) * (parameters[ZZ3] + (parameters[XX3] + parameters[YY3]));
     const rx90_real_t t444 = parameters[YY3] - t443;
     const rx90_real_t t445 = t358 * parameters[YZ3] + t161 * t444 + t442;
+    /* link j5: inertia, momentum beyond */
     const rx90_real_t t446 = t356 * parameters[XY4] + t361 * t412 + (t394 - t434);
     const rx90_real_t t447 = t356 * t408 + t361 * parameters[XY4] + (t16 * t406 - t14 * t405);
     const rx90_real_t t448 = parameters[XX3] - t443;
+    /* link j4: inertia, momentum beyond */
     const rx90_real_t t449 = t161 * t448 - t355 * parameters[XZ3] + (t36 * t446 - t34 * t447);
+    /* link j3: inertia, momentum beyond */
     const rx90_real_t t450 = t79 * (t430 - t433) + t75 * (t445 - t449);
     const rx90_real_t t451 = t79 * t450;
+    /* link j4: inertia, momentum beyond */
     const rx90_real_t t452 = t358 * parameters[MZ3] + t161 * parameters[MY3] + (t441 - t67 * t416);
     const rx90_real_t t453 = t161 * parameters[MX3] - t355 * parameters[MZ3] + t423;
-    const rx90_real_t t454 = RX90_C(0.45) * (t79 * t452 + t75 * t453);
-    const rx90_real_t t455 = RX90_C(0.45) * dq[1];
-    const rx90_real_t t456 = t116 * t455;
-    const rx90_real_t t457 = RX90_C(0.45) * t157;
-    const rx90_real_t t458 = t147 * t457;
+    const rx90_real_t t454 = RX90_C(0.45) * (t79 * t452 + t75 * t453); /* link j3: inertia, momentum beyond */
+    const rx90_real_t t455 = RX90_C(0.45) * dq[1]; /* link j3: velocity of its origin */
+    const rx90_real_t t456 = t116 * t455; /* link j3: inertia, momentum beyond */
+    const rx90_real_t t457 = RX90_C(0.45) * t157; /* link j3: velocity of its origin */
+    const rx90_real_t t458 = t147 * t457; /* link j3: inertia, momentum beyond */
     const rx90_real_t t459 = t456 - t458 - t454;
     const rx90_real_t t460 = t157 * parameters[XZ2];
     const rx90_real_t t461 = dq[1] * parameters[XY2];
@@ -740,49 +798,54 @@ int rx90_forward_dynamics_derivatives_standard(
     const rx90_real_t t466 = RX90_C(0.5) * (parameters[ZZ2] + (parameters[XX2] + parameters[YY2]));
     const rx90_real_t t467 = t466 - parameters[YY2];
     const rx90_real_t t468 = t157 * parameters[YZ2] + dq[1] * t467 + (t465 - t445);
-    const rx90_real_t t469 = t90 - t99;
+    const rx90_real_t t469 = t90 - t99; /* link j3: inertia of it and all beyond */
+    /* link j3: inertia, momentum beyond */
     const rx90_real_t t470 = RX90_C(0.45) * (t75 * t452 - t79 * t453) + t469 * t455;
     const rx90_real_t t471 = parameters[XX2] - t466;
     const rx90_real_t t472 = dq[1] * t471 - t156 * parameters[XZ2] + (t449 + t465 + t470);
+    /* link j2: inertia, momentum beyond */
     const rx90_real_t t473 = t115 * (t115 * (t464 - t462) + t118 * (t468 + t472));
     const rx90_real_t t474 = RX90_C(333.33333333333337) * parameters[FV1]
         + RX90_C(0.06666666666666667) * (t462 + t473);
     const rx90_real_t t475 = rx90_bounded(RX90_C(30.0) * t345);
     const rx90_real_t t476 = t153 * t345;
     const rx90_real_t t477 = rx90_bounded(RX90_C(-30.0) * t476);
-    const rx90_real_t t478 = t34 * t414;
+    const rx90_real_t t478 = t34 * t414; /* link j4: inertia, momentum beyond */
     const rx90_real_t t479 = t355 * parameters[XY3] + t358 * t448 - (t413 - t478 - t86 * t425);
     const rx90_real_t t480 = t34 * t438 - t36 * t440;
     const rx90_real_t t481 = t34 * t436 - t36 * t437 + (RX90_C(-0.45) * t480 + t88 * t425);
     const rx90_real_t t482 = t355 * t444 + t358 * parameters[XY3] + t481;
     const rx90_real_t t483 = t355 * parameters[MY3] + t358 * parameters[MX3] + (t480 - t67 * t425);
+    /* link j3: inertia, momentum beyond */
     const rx90_real_t t484 = t75 * t482 - t79 * t479 + (RX90_C(0.45) * t483 + t469 * t457);
+    /* link j2: derivatives */
     const rx90_real_t t485 = RX90_C(2.0) * (t157 * t471 - t156 * parameters[XY2] + t484);
+    /* link j3: inertia, momentum beyond */
     const rx90_real_t t486 = t157 * parameters[XY2] + t156 * t467 - (t75 * t479 + t79 * t482 + t116 * t457);
-    const rx90_real_t t487 = RX90_C(2.0) * t486;
+    const rx90_real_t t487 = RX90_C(2.0) * t486; /* link j2: derivatives */
     const rx90_real_t t488 = RX90_C(0.03333333333333333) * (t118 * t485 + t115 * t487);
     const rx90_real_t t489 = t345 * (t146 + t94 * t153);
     const rx90_real_t t490 = rx90_bounded(RX90_C(-30.0) * t489);
-    const rx90_real_t t491 = RX90_C(2.0) * t479;
+    const rx90_real_t t491 = RX90_C(2.0) * t479; /* link j3: derivatives */
     const rx90_real_t t492 = RX90_C(2.0) * t482;
-    const rx90_real_t t493 = RX90_C(0.9) * t157;
-    const rx90_real_t t494 = t75 * t492 - t79 * t491 + t90 * t493;
+    const rx90_real_t t493 = RX90_C(0.9) * t157; /* link j6: derivatives */
+    const rx90_real_t t494 = t75 * t492 - t79 * t491 + t90 * t493; /* link j3: derivatives */
     const rx90_real_t t495 = t75 * t491 + t79 * t492 + t116 * t493;
     const rx90_real_t t496 = RX90_C(0.03333333333333333) * (t118 * t494 - t115 * t495);
     const rx90_real_t t497 = t95 + t58 * t94;
     const rx90_real_t t498 = t345 * (t58 * t146 - t138 + t153 * t497);
     const rx90_real_t t499 = rx90_bounded(RX90_C(-10.0) * t498);
-    const rx90_real_t t500 = RX90_C(2.0) * t446;
+    const rx90_real_t t500 = RX90_C(2.0) * t446; /* link j4: derivatives */
     const rx90_real_t t501 = RX90_C(2.0) * t447;
     const rx90_real_t t502 = t36 * t500 - t34 * t501;
     const rx90_real_t t503 = RX90_C(2.0) * t431;
-    const rx90_real_t t504 = RX90_C(-0.9) * t355;
+    const rx90_real_t t504 = RX90_C(-0.9) * t355; /* link j6: derivatives */
     const rx90_real_t t505 = RX90_C(0.9) * t161;
-    const rx90_real_t t506 = t503 - (t86 * t505 - t45 * t504);
-    const rx90_real_t t507 = RX90_C(-0.9) * dq[1];
-    const rx90_real_t t508 = t79 * t502 - t75 * t506 + (t86 * t507 - t76 * t493);
-    const rx90_real_t t509 = t79 * t45;
-    const rx90_real_t t510 = t75 * t502 + t79 * t506 + t509 * t493;
+    const rx90_real_t t506 = t503 - (t86 * t505 - t45 * t504); /* link j4: derivatives */
+    const rx90_real_t t507 = RX90_C(-0.9) * dq[1]; /* link j6: derivatives */
+    const rx90_real_t t508 = t79 * t502 - t75 * t506 + (t86 * t507 - t76 * t493); /* link j4: derivatives */
+    const rx90_real_t t509 = t79 * t45; /* link j4: column of the mass matrix */
+    const rx90_real_t t510 = t75 * t502 + t79 * t506 + t509 * t493; /* link j4: derivatives */
     const rx90_real_t t511 = RX90_C(0.1) * (t118 * t508 + t115 * t510);
     const rx90_real_t t512 = t488 * t477 - t474 * t475 + t496 * t490 - t511 * t499;
     const rx90_real_t t513 = t72 + t22 * t58;
@@ -790,7 +853,7 @@ int rx90_forward_dynamics_derivatives_standard(
     const rx90_real_t t515 = t134 + t22 * t138 - t146 * t513 - t153 * t514;
     const rx90_real_t t516 = t345 * t515;
     const rx90_real_t t517 = rx90_bounded(RX90_C(-10.0) * t516);
-    const rx90_real_t t518 = RX90_C(2.0) * t410;
+    const rx90_real_t t518 = RX90_C(2.0) * t410; /* link j5: derivatives */
     const rx90_real_t t519 = RX90_C(2.0) * t411;
     const rx90_real_t t520 = t16 * t518 - t14 * t519;
     const rx90_real_t t521 = RX90_C(-2.0) * t400;
@@ -798,8 +861,8 @@ int rx90_forward_dynamics_derivatives_standard(
     const rx90_real_t t523 = t14 * t518 + t16 * t519;
     const rx90_real_t t524 = t523 + (t53 * t504 + t128 * t505);
     const rx90_real_t t525 = t75 * t524 - t79 * t522 + (t128 * t507 - t82 * t493);
-    const rx90_real_t t526 = t79 * t53 + t75 * t43;
-    const rx90_real_t t527 = t75 * t522 + t79 * t524 + t526 * t493;
+    const rx90_real_t t526 = t79 * t53 + t75 * t43; /* link j5: column of the mass matrix */
+    const rx90_real_t t527 = t75 * t522 + t79 * t524 + t526 * t493; /* link j5: derivatives */
     const rx90_real_t t528 = RX90_C(0.1) * (t118 * t525 - t115 * t527);
     const rx90_real_t t529 = t30 + t5 * t22;
     const rx90_real_t t530 = t59 + t5 * t72 + t58 * t529;
@@ -807,7 +870,7 @@ int rx90_forward_dynamics_derivatives_standard(
     const rx90_real_t t532 = t127 + t5 * t134 + t138 * t529 - t146 * t530;
     const rx90_real_t t533 = t345 * (t532 - t153 * t531);
     const rx90_real_t t534 = RX90_C(-6.0) * t533;
-    const rx90_real_t t535 = RX90_C(2.0) * t391;
+    const rx90_real_t t535 = RX90_C(2.0) * t391; /* link j6: derivatives */
     const rx90_real_t t536 = RX90_C(2.0) * t392;
     const rx90_real_t t537 = t2 * t535 - t1 * t536;
     const rx90_real_t t538 = RX90_C(-2.0) * t382;
@@ -817,8 +880,8 @@ int rx90_forward_dynamics_derivatives_standard(
     const rx90_real_t t542 = t14 * t537 - t16 * t538;
     const rx90_real_t t543 = t542 + (t49 * t504 + t121 * t505);
     const rx90_real_t t544 = t75 * t543 - t79 * t541 + (t121 * t507 + t80 * t493);
-    const rx90_real_t t545 = t79 * t49 - t75 * t78;
-    const rx90_real_t t546 = t75 * t541 + t79 * t543 + t545 * t493;
+    const rx90_real_t t545 = t79 * t49 - t75 * t78; /* link j6: column of the mass matrix */
+    const rx90_real_t t546 = t75 * t541 + t79 * t543 + t545 * t493; /* link j6: derivatives */
     const rx90_real_t t547 = RX90_C(0.16666666666666666) * (t118 * t544 - t115 * t546);
     ddq_by_dq[0] = t512 + t528 * t517 + t547 * t534;
     const rx90_real_t t548 = rx90_bounded(RX90_C(30.0) * (t152 + t153 * t476));
@@ -878,44 +941,44 @@ int rx90_forward_dynamics_derivatives_standard(
     ddq_by_input[24] = t576;
     ddq_by_input[30] = t585;
     const rx90_real_t t593 = t347 + t348;
-    const rx90_real_t t594 = t355 * t358;
+    const rx90_real_t t594 = t355 * t358; /* link j3: motion */
     const rx90_real_t t595 = t594 + t593;
     const rx90_real_t t596 = t354 * t346;
     const rx90_real_t t597 = t358 * t161;
     const rx90_real_t t598 = t597 - t596;
     const rx90_real_t t599 = t597 + t598;
     const rx90_real_t t600 = t36 * t595 - t34 * t599;
-    const rx90_real_t t601 = t356 * t359;
+    const rx90_real_t t601 = t356 * t359; /* link j4: motion */
     const rx90_real_t t602 = t601 + t600;
     const rx90_real_t t603 = t351 + t602;
-    const rx90_real_t t604 = t360 * t365;
+    const rx90_real_t t604 = t360 * t365; /* link j5: motion */
     const rx90_real_t t605 = t604 + t603;
     const rx90_real_t t606 = t357 * t346;
-    const rx90_real_t t607 = t355 * t161;
+    const rx90_real_t t607 = t355 * t161; /* link j3: motion */
     const rx90_real_t t608 = t607 + t606;
     const rx90_real_t t609 = t608 - t349;
-    const rx90_real_t t610 = t356 * t361;
+    const rx90_real_t t610 = t356 * t361; /* link j4: motion */
     const rx90_real_t t611 = t610 - t609;
     const rx90_real_t t612 = t34 * t595 + t36 * t599;
     const rx90_real_t t613 = t361 * t359;
     const rx90_real_t t614 = t613 + t612;
     const rx90_real_t t615 = t613 + t614;
     const rx90_real_t t616 = t14 * t611 - t16 * t615;
-    const rx90_real_t t617 = t365 * t362;
+    const rx90_real_t t617 = t365 * t362; /* link j5: motion */
     const rx90_real_t t618 = t617 - t616;
     const rx90_real_t t619 = t617 + t618;
     const rx90_real_t t620 = t1 * t605 + t2 * t619;
-    const rx90_real_t t621 = t363 * t366;
+    const rx90_real_t t621 = t363 * t366; /* link j6: motion */
     const rx90_real_t t622 = t621 + t620;
     const rx90_real_t t623 = t2 * t605 - t1 * t619;
     const rx90_real_t t624 = t369 * t366;
     const rx90_real_t t625 = t624 + t623;
     const rx90_real_t t626 = t624 + t625;
     const rx90_real_t t627 = t16 * t611 + t14 * t615;
-    const rx90_real_t t628 = t360 * t362;
+    const rx90_real_t t628 = t360 * t362; /* link j5: motion */
     const rx90_real_t t629 = t628 - t627;
     const rx90_real_t t630 = t629 - t353;
-    const rx90_real_t t631 = t369 * t363;
+    const rx90_real_t t631 = t369 * t363; /* link j6: motion */
     const rx90_real_t t632 = t631 + t630;
     const rx90_real_t t633 = t621 * t193 + parameters[XX6] * t622 + parameters[XY6] * t626
         + parameters[XZ6] * t632;
@@ -932,8 +995,8 @@ int rx90_forward_dynamics_derivatives_standard(
     const rx90_real_t t644 = t643 - RX90_C(0.45) * t599;
     const rx90_real_t t645 = t36 * t639 + t34 * t644;
     const rx90_real_t t646 = t221 + t79 * t637;
-    const rx90_real_t t647 = t355 * t355;
-    const rx90_real_t t648 = t647 + t224;
+    const rx90_real_t t647 = t355 * t355; /* link j3: motion */
+    const rx90_real_t t648 = t647 + t224; /* link j4: motion */
     const rx90_real_t t649 = RX90_C(-0.45) * t648 + t646;
     const rx90_real_t t650 = t14 * t649 - t16 * t645;
     const rx90_real_t t651 = t34 * t639 - t36 * t644;
@@ -945,7 +1008,7 @@ int rx90_forward_dynamics_derivatives_standard(
     const rx90_real_t t657 = t630 - t631;
     const rx90_real_t t658 = t624 * t232 + parameters[YY6] * t625 + parameters[XY6] * t656
         + parameters[YZ6] * t657;
-    const rx90_real_t t659 = t369 * t369;
+    const rx90_real_t t659 = t369 * t369; /* link j6: motion */
     const rx90_real_t t660 = t2 * t650 + t1 * t651;
     const rx90_real_t t661 = parameters[MZ6] * t660;
     const rx90_real_t t662 = (t659 - t635) * parameters[XZ6] + t658 + (parameters[MX6] * t654 - t661);
@@ -953,7 +1016,7 @@ int rx90_forward_dynamics_derivatives_standard(
     const rx90_real_t t664 = t604 - t603;
     const rx90_real_t t665 = parameters[XX5] * t618 - t617 * t239 + parameters[XY5] * t663
         + parameters[XZ5] * t664;
-    const rx90_real_t t666 = t365 * t365;
+    const rx90_real_t t666 = t365 * t365; /* link j5: motion */
     const rx90_real_t t667 = t362 * t362;
     const rx90_real_t t668 = (t667 - t666) * parameters[YZ5] + t665 + (parameters[MY5] * t651
         + parameters[MZ5] * t654);
@@ -972,7 +1035,7 @@ int rx90_forward_dynamics_derivatives_standard(
     const rx90_real_t t677 = t610 + t609;
     const rx90_real_t t678 = t613 * t254 + parameters[XX4] * t614 + parameters[XY4] * t676
         + parameters[XZ4] * t677;
-    const rx90_real_t t679 = t361 * t361;
+    const rx90_real_t t679 = t361 * t361; /* link j4: motion */
     const rx90_real_t t680 = t359 * t359;
     const rx90_real_t t681 = (t679 - t680) * parameters[YZ4] - t678 - (parameters[MZ4] * t651
         - parameters[MY4] * t649);
@@ -996,7 +1059,7 @@ int rx90_forward_dynamics_derivatives_standard(
     const rx90_real_t t695 = (t666 + t667) * parameters[MX5] + parameters[MY5] * t605
         - parameters[MZ5] * t627;
     const rx90_real_t t696 = t695 - parameters[M5] * t650 + (t1 * t694 - t2 * t691);
-    const rx90_real_t t697 = t659 + t634;
+    const rx90_real_t t697 = t659 + t634; /* link j6: columns */
     const rx90_real_t t698 = parameters[M6] * t654 + (parameters[MX6] * t626 - parameters[MY6] * t656
         - t697 * parameters[MZ6]);
     const rx90_real_t t699 = (t673 + t667) * parameters[MY5] + parameters[MX5] * t664
@@ -1005,7 +1068,7 @@ int rx90_forward_dynamics_derivatives_standard(
     const rx90_real_t t701 = (t679 + t680) * parameters[MX4] + parameters[MY4] * t611
         + parameters[MZ4] * t600;
     const rx90_real_t t702 = parameters[M4] * t645 + t701 + (t16 * t696 + t14 * t700);
-    const rx90_real_t t703 = t673 + t666;
+    const rx90_real_t t703 = t673 + t666; /* link j6: motion */
     const rx90_real_t t704 = parameters[M5] * t651 + (t703 * parameters[MZ5] - (parameters[MX5] * t663
         - parameters[MY5] * t619));
     const rx90_real_t t705 = (t686 + t680) * parameters[MY4] + parameters[MX4] * t677
@@ -1016,7 +1079,7 @@ int rx90_forward_dynamics_derivatives_standard(
     const rx90_real_t t709 = t593 - t594;
     const rx90_real_t t710 = parameters[XZ3] * t709 - (t597 * t287 + parameters[XX3] * t598
         + parameters[XY3] * t708);
-    const rx90_real_t t711 = t358 * t358;
+    const rx90_real_t t711 = t358 * t358; /* link j3: motion */
     const rx90_real_t t712 = parameters[MY3] * t643 - parameters[MZ3] * t646 + ((t711
         - t224) * parameters[YZ3] + t710);
     const rx90_real_t t713 = t712 + (t36 * t682 + t34 * t688 - RX90_C(-0.45) * t707);
@@ -1029,7 +1092,7 @@ int rx90_forward_dynamics_derivatives_standard(
     const rx90_real_t t717 = parameters[MZ3] * t638 + parameters[MX3] * t643 + ((t647
         - t224) * parameters[XZ3] + t716);
     const rx90_real_t t718 = t717 + (t715 + (t14 * t669 + t16 * t675));
-    const rx90_real_t t719 = t647 + t711;
+    const rx90_real_t t719 = t647 + t711; /* link j4: motion */
     const rx90_real_t t720 = parameters[M3] * t643 + (parameters[MX3] * t708 - parameters[MY3] * t599
         - t719 * parameters[MZ3]);
     const rx90_real_t t721 = t79 * t718 - t75 * t713 + RX90_C(0.45) * (t720 + t707);
@@ -1037,11 +1100,11 @@ int rx90_forward_dynamics_derivatives_standard(
     const rx90_real_t t723 = t301 + t722;
     const rx90_real_t t724 = t309 + parameters[YY2] * t641 - parameters[XY2] * (t301 + t723)
         + parameters[YZ2] * (t212 - t347);
-    const rx90_real_t t725 = t311 + t207;
-    const rx90_real_t t726 = RX90_C(2.0) * t157;
+    const rx90_real_t t725 = t311 + t207; /* link j3: motion */
+    const rx90_real_t t726 = RX90_C(2.0) * t157; /* link j2: derivatives */
     const rx90_real_t t727 = RX90_C(-2.0) * t156;
     const rx90_real_t t728 = t462 * t726 + t468 * t727 + (t725 * t148 + (t113 * t640 - t117 * t722));
-    const rx90_real_t t729 = parameters[MZ2] + t147;
+    const rx90_real_t t729 = parameters[MZ2] + t147; /* link j3: inertia of it and all beyond */
     const rx90_real_t t730 = t313 + (t312 + t724) + t721 + (t728 - t209 * t729);
     const rx90_real_t t731 = parameters[XX2] * t723 - t302 - parameters[XY2] * t642 + parameters[XZ2] * t636;
     const rx90_real_t t732 = t304 + t731 - t305 + (t79 * t713 + t75 * t718);
@@ -1072,30 +1135,37 @@ int rx90_forward_dynamics_derivatives_standard(
     const rx90_real_t t752 = t586 * t738 - t585 * t735 + t587 * t740 + t588 * t742;
     ddq_by_q[31] = t752 + t590 * t745 + t592 * t747;
     const rx90_real_t t753 = t443 - parameters[ZZ3];
+    /* link j4: inertia, momentum beyond */
     const rx90_real_t t754 = t358 * t753 - t161 * parameters[YZ3] + (t409 + t478 + t45 * t416);
     const rx90_real_t t755 = t161 * parameters[XZ3] + t355 * t753 - (t34 * t446 + t36 * t447);
     const rx90_real_t t756 = parameters[ZZ2] - t466;
+    /* link j3: inertia, momentum beyond */
     const rx90_real_t t757 = t157 * t756 - dq[1] * parameters[YZ2] + (t79 * t754 - t75 * t755);
+    /* link j2: derivatives */
     const rx90_real_t t758 = t118 * (RX90_C(2.0) * t757 + (t113 * t726 + t117 * t727));
+    /* link j3: inertia, momentum beyond */
     const rx90_real_t t759 = dq[1] * parameters[XZ2] - t156 * t756 + (t75 * t754 + t79 * t755 - t147 * t455);
+    /* link j2: derivatives */
     const rx90_real_t t760 = t115 * (RX90_C(2.0) * t759 + (t117 * t726 + t114 * t727));
     const rx90_real_t t761 = RX90_C(0.03333333333333333) * (t758 + t760);
+    /* link j4: inertia, momentum beyond */
     const rx90_real_t t762 = t399 - t415 + t426 - t427 - (t428 + t432);
+    /* link j2: derivatives */
     const rx90_real_t t763 = RX90_C(2.0) * (t460 - t463 + (t762 - t458 - t459)) + RX90_C(2.0) * (t157 * t148
         + t156 * t149);
     const rx90_real_t t764 = RX90_C(-333.33333333333337) * parameters[FV2]
         + RX90_C(0.03333333333333333) * t763;
-    const rx90_real_t t765 = RX90_C(2.0) * t762;
+    const rx90_real_t t765 = RX90_C(2.0) * t762; /* link j3: derivatives */
     const rx90_real_t t766 = t765 + t116 * t507 + RX90_C(2.0) * (t157 * t142 + t156 * t143);
     const rx90_real_t t767 = RX90_C(0.03333333333333333) * t766;
-    const rx90_real_t t768 = t34 * t500 + t36 * t501;
+    const rx90_real_t t768 = t34 * t500 + t36 * t501; /* link j4: derivatives */
     const rx90_real_t t769 = t768 + t509 * t507 - RX90_C(2.0) * (t156 * t136 - t157 * t135);
     const rx90_real_t t770 = RX90_C(0.1) * t769;
     const rx90_real_t t771 = t764 * t477 - t761 * t475 + t767 * t490 + t770 * t499;
-    const rx90_real_t t772 = t34 * t520 + t36 * t521 + t43 * t505;
+    const rx90_real_t t772 = t34 * t520 + t36 * t521 + t43 * t505; /* link j5: derivatives */
     const rx90_real_t t773 = t772 + t526 * t507 + RX90_C(2.0) * (t157 * t131 + t156 * t132);
     const rx90_real_t t774 = RX90_C(0.1) * t773;
-    const rx90_real_t t775 = t34 * t539 + t36 * t540 - t78 * t505;
+    const rx90_real_t t775 = t34 * t539 + t36 * t540 - t78 * t505; /* link j6: derivatives */
     const rx90_real_t t776 = t775 + t545 * t507 + RX90_C(2.0) * (t157 * t124 + t156 * t125);
     const rx90_real_t t777 = RX90_C(0.16666666666666666) * t776;
     ddq_by_dq[1] = t771 + t774 * t517 + t777 * t534;
@@ -1115,7 +1185,7 @@ int rx90_forward_dynamics_derivatives_standard(
     ddq_by_input[19] = t567;
     ddq_by_input[25] = t577;
     ddq_by_input[31] = t586;
-    const rx90_real_t t783 = RX90_C(2.0) * t358;
+    const rx90_real_t t783 = RX90_C(2.0) * t358; /* link j3: derivatives */
     const rx90_real_t t784 = RX90_C(2.0) * t355;
     const rx90_real_t t785 = t449 * t783 + t433 * t784 + (t719 * t141 + (t107 * t596 - t110 * t606));
     const rx90_real_t t786 = t713 - (t785 - t147 * t646);
@@ -1128,7 +1198,7 @@ int rx90_forward_dynamics_derivatives_standard(
         + parameters[MZ3] * t606;
     const rx90_real_t t793 = parameters[M3] * t638 + t792 + (t36 * t702 - t34 * t706);
     const rx90_real_t t794 = t719 * t87 - t147 * t606 - (t483 * t783 + t98 * t638);
-    const rx90_real_t t795 = t686 + t679;
+    const rx90_real_t t795 = t686 + t679; /* link j5: motion */
     const rx90_real_t t796 = parameters[M4] * t649 + (parameters[MX4] * t676 - parameters[MY4] * t615
         - t795 * parameters[MZ4]);
     const rx90_real_t t797 = parameters[M3] * t646 + (parameters[MX3] * t709 - t648 * parameters[MY3]
@@ -1159,7 +1229,7 @@ int rx90_forward_dynamics_derivatives_standard(
     ddq_by_q[26] = t815 + t581 * t809 + t584 * t811;
     const rx90_real_t t816 = t586 * t803 - t585 * t791 + t587 * t804 + t588 * t806;
     ddq_by_q[32] = t816 + t590 * t809 + t592 * t811;
-    const rx90_real_t t817 = RX90_C(2.0) * t754 + (t110 * t784 - t106 * t783);
+    const rx90_real_t t817 = RX90_C(2.0) * t754 + (t110 * t784 - t106 * t783); /* link j3: derivatives */
     const rx90_real_t t818 = RX90_C(2.0) * t755 - (t107 * t784 - t110 * t783);
     const rx90_real_t t819 = t75 * t817 + t79 * t818 + RX90_C(0.45) * (t89 * t783 - t87 * t784);
     const rx90_real_t t820 = t118 * (t79 * t817 - t75 * t818) + t115 * t819;
@@ -1191,7 +1261,7 @@ int rx90_forward_dynamics_derivatives_standard(
     ddq_by_input[20] = t568;
     ddq_by_input[26] = t578;
     ddq_by_input[32] = t587;
-    const rx90_real_t t836 = RX90_C(2.0) * t361;
+    const rx90_real_t t836 = RX90_C(2.0) * t361; /* link j4: derivatives */
     const rx90_real_t t837 = RX90_C(2.0) * t356;
     const rx90_real_t t838 = t399 * t836 + t409 * t837 + (t795 * t33 + (t60 * t600 - t62 * t612));
     const rx90_real_t t839 = t688 + (t838 - t65 * t645);
@@ -1266,7 +1336,7 @@ int rx90_forward_dynamics_derivatives_standard(
     ddq_by_input[21] = t570;
     ddq_by_input[27] = t573;
     ddq_by_input[33] = t588;
-    const rx90_real_t t893 = RX90_C(2.0) * t365;
+    const rx90_real_t t893 = RX90_C(2.0) * t365; /* link j5: derivatives */
     const rx90_real_t t894 = RX90_C(2.0) * t360;
     const rx90_real_t t895 = t394 * t893 + t384 * t894 + (t703 * t15 + (t24 * t616 - t25 * t627));
     const rx90_real_t t896 = t669 + (t895 - t38 * t654);
@@ -1349,7 +1419,7 @@ int rx90_forward_dynamics_derivatives_standard(
     ddq_by_input[22] = t573;
     ddq_by_input[28] = t581;
     ddq_by_input[34] = t590;
-    const rx90_real_t t957 = RX90_C(2.0) * t363;
+    const rx90_real_t t957 = RX90_C(2.0) * t363; /* link j6: derivatives */
     const rx90_real_t t958 = RX90_C(2.0) * t369;
     const rx90_real_t t959 = t368 * t957 + t376 * t958 + (parameters[XY6] * t620 - parameters[XX6] * t623
         - t697 * parameters[XZ6]);

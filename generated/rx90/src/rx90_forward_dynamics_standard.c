@@ -6,7 +6,7 @@
  * Arm rx90, description 10f0505273a073e2.
  * SPDX-License-Identifier: 0BSD
  *
- * Operations: 976 (515 mul, 461 add, 0 neg), 6 div, 10 trig, 6 other.
+ * Operations: 976 (515 mul, 461 add, 0 neg), 6 div, 10 trig, 6 other calls (sign, select and the like).
  *
  * @param[in]   q           [6]   [rad]      joint coordinates; norm at most 10000
  * @param[in]   dq          [6]   [rad/s]    joint velocities; norm at most 100000
@@ -107,11 +107,11 @@
  */
 #include "rx90_private.h"
 
-#if RX90_GENERATION != 0xD1F0D18FUL
+#if RX90_GENERATION != 0x88006983UL
 #error "rx90.h and rx90_forward_dynamics_standard.c are of different generations: generate the arm again"
 #endif
 
-int rx90_forward_dynamics_standard(
+rx90_status_t rx90_forward_dynamics_standard(
     const rx90_real_t q[RX90_N_JOINTS],
     const rx90_real_t dq[RX90_N_JOINTS],
     const rx90_real_t input[RX90_N_JOINTS],
@@ -122,7 +122,7 @@ int rx90_forward_dynamics_standard(
         M2, XX3, XY3, XZ3, YY3, YZ3, ZZ3, MX3, MY3, MZ3, M3, XX4, XY4, XZ4, YY4, YZ4, ZZ4, MX4, MY4, MZ4, M4,
         XX5, XY5, XZ5, YY5, YZ5, ZZ5, MX5, MY5, MZ5, M5, XX6, XY6, XZ6, YY6, YZ6, ZZ6, MX6, MY6, MZ6, M6, FV1,
         FC1, IA1, FV2, FC2, IA2, FV3, FC3, IA3, FV4, FC4, IA4, FV5, FC5, IA5, FV6, FC6, IA6 };
-    int status = RX90_STATUS_OK;
+    rx90_status_t status = RX90_STATUS_OK;
 
     if (!rx90_within_joints(q, RX90_C(1.0e8))
         || !rx90_within_joints(dq, RX90_C(1.0e10))
@@ -150,10 +150,11 @@ int rx90_forward_dynamics_standard(
         rx90_zero(out, 6);
         return RX90_STATUS_PIVOT;
     }
+    /* link j6: column of the mass matrix */
     const rx90_real_t t3 = t1 * parameters[XZ6] + t2 * parameters[YZ6];
     const rx90_real_t t4 = RX90_C(-1.0) / t0;
     const rx90_real_t t5 = t3 * t4;
-    const rx90_real_t t6 = parameters[XX6] - parameters[YY6];
+    const rx90_real_t t6 = parameters[XX6] - parameters[YY6]; /* link j6: inertia of it and all beyond */
     const rx90_real_t t7 = parameters[XY6] * (RX90_C(2.0) * t1) - t2 * t6;
     const rx90_real_t t8 = t2 * t7;
     const rx90_real_t t9 = parameters[ZZ5] + (parameters[XX6] + t8);
@@ -170,15 +171,18 @@ int rx90_forward_dynamics_standard(
     }
     const rx90_real_t t13 = parameters[XZ5] - (parameters[XY6] - t1 * t7);
     const rx90_real_t t15 = parameters[YZ5] - t3;
-    const rx90_real_t t17 = t14 * t13 + t16 * t15;
+    const rx90_real_t t17 = t14 * t13 + t16 * t15; /* link j5: column of the mass matrix */
+    /* link j6: column of the mass matrix */
     const rx90_real_t t18 = t1 * parameters[YZ6] - t2 * parameters[XZ6];
     const rx90_real_t t19 = t16 * parameters[ZZ6] - t14 * t18;
     const rx90_real_t t20 = t17 - t19 * t5;
     const rx90_real_t t21 = RX90_C(1.0) / t11;
     const rx90_real_t t22 = t20 * t21;
+    /* link j6: inertia of it and all beyond */
     const rx90_real_t t23 = parameters[XX5] + (parameters[YY6] - t8);
     const rx90_real_t t24 = parameters[YY5] + parameters[ZZ6];
     const rx90_real_t t25 = t18 - parameters[XY5];
+    /* link j5: inertia of it and all beyond */
     const rx90_real_t t26 = t16 * (t24 - t23) - t25 * (RX90_C(2.0) * t14);
     const rx90_real_t t27 = t16 * t26;
     const rx90_real_t t28 = parameters[ZZ4] + (t23 + t27);
@@ -196,20 +200,23 @@ int rx90_forward_dynamics_standard(
     }
     const rx90_real_t t33 = t25 + t14 * t26 - parameters[XZ4];
     const rx90_real_t t35 = t17 - parameters[YZ4];
+    /* link j6: column of the mass matrix */
     const rx90_real_t t37 = t2 * parameters[MY6] + t1 * parameters[MX6];
+    /* link j5: inertia of it and all beyond */
     const rx90_real_t t38 = parameters[MY4] - (parameters[MZ5] - t37);
+    /* link j6: column of the mass matrix */
     const rx90_real_t t39 = t1 * parameters[MY6] - t2 * parameters[MX6];
-    const rx90_real_t t40 = t39 - parameters[MX5];
+    const rx90_real_t t40 = t39 - parameters[MX5]; /* link j6: inertia of it and all beyond */
     const rx90_real_t t41 = parameters[MY5] + parameters[MZ6];
-    const rx90_real_t t42 = t14 * t41 + t16 * t40;
-    const rx90_real_t t43 = t42 - parameters[MX4];
-    const rx90_real_t t44 = t34 * t43 - t36 * t38;
+    const rx90_real_t t42 = t14 * t41 + t16 * t40; /* link j5: column of the mass matrix */
+    const rx90_real_t t43 = t42 - parameters[MX4]; /* link j5: inertia of it and all beyond */
+    const rx90_real_t t44 = t34 * t43 - t36 * t38; /* link j4: column of the mass matrix */
     const rx90_real_t t45 = t34 * t33 + t36 * t35 + RX90_C(-0.45) * t44;
-    const rx90_real_t t46 = t16 * t18 + t14 * parameters[ZZ6];
+    const rx90_real_t t46 = t16 * t18 + t14 * parameters[ZZ6]; /* link j6: column of the mass matrix */
     const rx90_real_t t47 = t16 * t37;
     const rx90_real_t t48 = t36 * t47 - t34 * t39;
     const rx90_real_t t49 = t36 * t3 - t34 * t46 - RX90_C(0.45) * t48;
-    const rx90_real_t t50 = t14 * t15 - t16 * t13;
+    const rx90_real_t t50 = t14 * t15 - t16 * t13; /* link j5: column of the mass matrix */
     const rx90_real_t t51 = t14 * t40 - t16 * t41;
     const rx90_real_t t52 = t36 * t51;
     const rx90_real_t t53 = t34 * t50 + t36 * t9 + RX90_C(-0.45) * t52;
@@ -218,14 +225,15 @@ int rx90_forward_dynamics_standard(
     const rx90_real_t t56 = RX90_C(-1.0) / t31;
     const rx90_real_t t57 = t55 * t56;
     const rx90_real_t t58 = t49 * t4;
-    const rx90_real_t t59 = parameters[XX4] + (t24 - t27);
+    const rx90_real_t t59 = parameters[XX4] + (t24 - t27); /* link j5: inertia of it and all beyond */
     const rx90_real_t t60 = parameters[YY4] + t9;
     const rx90_real_t t61 = parameters[XY4] + t50;
+    /* link j4: inertia of it and all beyond */
     const rx90_real_t t62 = t36 * (t59 - t60) + t61 * (RX90_C(-2.0) * t34);
     const rx90_real_t t63 = t36 * t62;
-    const rx90_real_t t64 = t51 - parameters[MZ4];
+    const rx90_real_t t64 = t51 - parameters[MZ4]; /* link j5: inertia of it and all beyond */
     const rx90_real_t t65 = parameters[M4] + (parameters[M5] + parameters[M6]);
-    const rx90_real_t t66 = RX90_C(0.45) * t65;
+    const rx90_real_t t66 = RX90_C(0.45) * t65; /* link j4: inertia of it and all beyond */
     const rx90_real_t t67 = RX90_C(0.45) * (t66 + RX90_C(-2.0) * t64);
     const rx90_real_t t68 = parameters[ZZ3] + (t59 - t63 + t67);
     const rx90_real_t t69 = t68 + RX90_C(1.0e4) * parameters[IA3];
@@ -240,13 +248,14 @@ int rx90_forward_dynamics_standard(
         rx90_zero(out, 6);
         return RX90_STATUS_PIVOT;
     }
+    /* link j6: column of the mass matrix */
     const rx90_real_t t75 = t49 + RX90_C(0.45) * (t73 * t48 + t74 * (t14 * t37));
     const rx90_real_t t76 = RX90_C(0.45) * (t74 * t42 - t73 * t52) - t53 - t75 * t5;
     const rx90_real_t t77 = t45 + RX90_C(0.45) * (t73 * t44) - t75 * t30 + t76 * t22;
-    const rx90_real_t t78 = t34 * t38 + t36 * t43;
-    const rx90_real_t t79 = t78 - parameters[MX3];
+    const rx90_real_t t78 = t34 * t38 + t36 * t43; /* link j4: column of the mass matrix */
+    const rx90_real_t t79 = t78 - parameters[MX3]; /* link j4: inertia of it and all beyond */
     const rx90_real_t t80 = t64 - t66 - parameters[MY3];
-    const rx90_real_t t81 = t74 * t79 - t73 * t80;
+    const rx90_real_t t81 = t74 * t79 - t73 * t80; /* link j3: column of the mass matrix */
     const rx90_real_t t82 = RX90_C(0.45) * t81 - t68 - t75 * t58 - t76 * t70;
     const rx90_real_t t83 = t82 - t77 * t57;
     const rx90_real_t t84 = RX90_C(1.0) / t71;
@@ -254,6 +263,7 @@ int rx90_forward_dynamics_standard(
     const rx90_real_t t86 = t77 * t56;
     const rx90_real_t t87 = t76 * t21;
     const rx90_real_t t88 = t75 * t4;
+    /* link j3: inertia of it and all beyond */
     const rx90_real_t t89 = RX90_C(0.45) * (RX90_C(0.45) * (parameters[M3] + t65) + RX90_C(-2.0) * t81);
     const rx90_real_t t90 = parameters[ZZ2] + (t68 + t89) + RX90_C(1.0e4) * parameters[IA2];
     const rx90_real_t t91 = t90 + t75 * t88 - t76 * t87 + t77 * t86;
@@ -267,38 +277,42 @@ int rx90_forward_dynamics_standard(
         rx90_zero(out, 6);
         return RX90_STATUS_PIVOT;
     }
-    const rx90_real_t t94 = parameters[XX3] + (t60 + t63 + t67);
+    const rx90_real_t t94 = parameters[XX3] + (t60 + t63 + t67); /* link j4: inertia of it and all beyond */
     const rx90_real_t t95 = parameters[YY3] + t28;
-    const rx90_real_t t96 = RX90_C(0.45) * t78;
+    const rx90_real_t t96 = RX90_C(0.45) * t78; /* link j4: column of the mass matrix */
     const rx90_real_t t97 = t34 * t35 - t36 * t33 + t96;
-    const rx90_real_t t98 = parameters[XY3] + t97;
+    const rx90_real_t t98 = parameters[XY3] + t97; /* link j4: inertia of it and all beyond */
+    /* link j3: inertia of it and all beyond */
     const rx90_real_t t99 = t74 * (t94 - t95) - t98 * (RX90_C(2.0) * t73);
     const rx90_real_t t100 = t74 * t99;
     const rx90_real_t t101 = parameters[XX2] + (t95 + t100);
     const rx90_real_t t103 = t98 + t73 * t99 + RX90_C(0.45) * (t74 * t80 + t73 * t79);
+    /* link j2: inertia of it and all beyond */
     const rx90_real_t t105 = t102 * (parameters[YY2] + (t94 - t100 + t89) - t101) + (parameters[XY2]
         + t103) * (RX90_C(2.0) * t104);
     const rx90_real_t t106 = parameters[ZZ1] + (t101 + t102 * t105) + RX90_C(1.0e4) * parameters[IA1];
-    const rx90_real_t t107 = RX90_C(0.45) * (t34 * t47 + t36 * t39);
+    const rx90_real_t t107 = RX90_C(0.45) * (t34 * t47 + t36 * t39); /* link j6: column of the mass matrix */
     const rx90_real_t t108 = t36 * t46 + t34 * t3 - t107;
     const rx90_real_t t109 = t104 * (t74 * t108 + t73 * t19) + t102 * (t107 + (t73 * t108 - t74 * t19));
     const rx90_real_t t110 = t109 * t4;
-    const rx90_real_t t111 = RX90_C(-0.45) * (t34 * t51);
+    const rx90_real_t t111 = RX90_C(-0.45) * (t34 * t51); /* link j5: column of the mass matrix */
     const rx90_real_t t112 = t36 * t50 - t34 * t9 - t111;
     const rx90_real_t t113 = t104 * (t74 * t112 + t73 * t17) + t102 * (t111 + (t73 * t112 - t74 * t17));
     const rx90_real_t t114 = t113 - t109 * t5;
     const rx90_real_t t115 = t114 * t21;
+    /* link j4: column of the mass matrix */
     const rx90_real_t t116 = t104 * (t73 * t28 - t74 * t97) + t102 * (t96 - (t73 * t97 + t74 * t28));
     const rx90_real_t t117 = t116 + t109 * t30 - t114 * t22;
     const rx90_real_t t118 = t117 * t56;
     const rx90_real_t t119 = t106 + t109 * t110 - t114 * t115 + t117 * t118;
-    const rx90_real_t t120 = t61 + t34 * t62 - parameters[XZ3];
+    const rx90_real_t t120 = t61 + t34 * t62 - parameters[XZ3]; /* link j4: inertia of it and all beyond */
     const rx90_real_t t121 = parameters[YZ3] + t45;
-    const rx90_real_t t122 = t74 * t120 + t73 * t121;
+    const rx90_real_t t122 = t74 * t120 + t73 * t121; /* link j3: column of the mass matrix */
     const rx90_real_t t123 = t73 * t120 - t74 * t121;
     const rx90_real_t t124 = t104 * t122 + t102 * t123 - t109 * t58 - t114 * t70;
     const rx90_real_t t125 = t124 + t117 * t57;
     const rx90_real_t t126 = t125 * t84;
+    /* link j2: column of the mass matrix */
     const rx90_real_t t127 = t104 * (t122 + RX90_C(0.45) * (parameters[MZ3] + t44) - parameters[XZ2])
         + t102 * (t123 - parameters[YZ2]);
     const rx90_real_t t128 = t127 - t109 * t88 + t114 * t87 + t117 * t86;
@@ -315,36 +329,36 @@ int rx90_forward_dynamics_standard(
         rx90_zero(out, 6);
         return RX90_STATUS_PIVOT;
     }
-    const rx90_real_t t134 = t104 * dq[0];
+    const rx90_real_t t134 = t104 * dq[0]; /* link j2: motion */
     const rx90_real_t t135 = t102 * dq[0];
-    const rx90_real_t t136 = t74 * t134 + t73 * t135;
+    const rx90_real_t t136 = t74 * t134 + t73 * t135; /* link j3: motion */
     const rx90_real_t t137 = t74 * t135 - t73 * t134;
     const rx90_real_t t138 = t136 * t137;
     const rx90_real_t t139 = dq[1] + dq[2];
     const rx90_real_t t140 = t139 * t137;
-    const rx90_real_t t141 = RX90_C(2.0) * t140;
+    const rx90_real_t t141 = RX90_C(2.0) * t140; /* link j4: motion */
     const rx90_real_t t142 = t34 * t141 - t36 * t138;
     const rx90_real_t t143 = t36 * t136 - t34 * t139;
     const rx90_real_t t144 = dq[3] + t137;
     const rx90_real_t t145 = t143 * t144;
     const rx90_real_t t146 = t142 + t145;
-    const rx90_real_t t147 = t16 * t143 + t14 * t144;
+    const rx90_real_t t147 = t16 * t143 + t14 * t144; /* link j5: motion */
     const rx90_real_t t148 = t16 * t144 - t14 * t143;
     const rx90_real_t t149 = t147 * t148;
-    const rx90_real_t t150 = t146 - t149;
-    const rx90_real_t t151 = t34 * t138 + t36 * t141;
+    const rx90_real_t t150 = t146 - t149; /* link j6: motion */
+    const rx90_real_t t151 = t34 * t138 + t36 * t141; /* link j4: motion */
     const rx90_real_t t152 = t36 * t139 + t34 * t136;
     const rx90_real_t t153 = t152 * t144;
     const rx90_real_t t154 = t151 - t153;
-    const rx90_real_t t155 = t154 - t153;
-    const rx90_real_t t156 = t143 * t152;
-    const rx90_real_t t157 = t139 * t136;
-    const rx90_real_t t158 = t156 - t157;
+    const rx90_real_t t155 = t154 - t153; /* link j5: motion */
+    const rx90_real_t t156 = t143 * t152; /* link j4: motion */
+    const rx90_real_t t157 = t139 * t136; /* link j3: motion */
+    const rx90_real_t t158 = t156 - t157; /* link j5: motion */
     const rx90_real_t t159 = t14 * t158 + t16 * t155;
     const rx90_real_t t160 = dq[4] + t152;
     const rx90_real_t t161 = t148 * t160;
     const rx90_real_t t162 = t159 + t161;
-    const rx90_real_t t163 = t161 + t162;
+    const rx90_real_t t163 = t161 + t162; /* link j6: motion */
     const rx90_real_t t164 = t2 * t163 - t1 * t150;
     const rx90_real_t t165 = t1 * t147 + t2 * t160;
     const rx90_real_t t166 = dq[5] + t148;
@@ -354,177 +368,219 @@ int rx90_forward_dynamics_standard(
     const rx90_real_t t170 = t2 * t147 - t1 * t160;
     const rx90_real_t t171 = t170 * t166;
     const rx90_real_t t172 = t169 + t171;
-    const rx90_real_t t173 = t171 + t172;
+    const rx90_real_t t173 = t171 + t172; /* link j6: force and moment */
     const rx90_real_t t174 = parameters[XY6] * t173 - (parameters[XX6] * t168 + t167 * (parameters[YY6]
         - parameters[ZZ6]));
-    const rx90_real_t t175 = t14 * t155 - t16 * t158;
+    const rx90_real_t t175 = t14 * t155 - t16 * t158; /* link j5: motion */
     const rx90_real_t t176 = t147 * t160;
     const rx90_real_t t177 = t175 + t176;
-    const rx90_real_t t178 = t170 * t165;
-    const rx90_real_t t179 = t177 + t178;
-    const rx90_real_t t180 = t165 * t165;
+    const rx90_real_t t178 = t170 * t165; /* link j6: motion */
+    const rx90_real_t t179 = t177 + t178; /* link j6: force and moment */
+    const rx90_real_t t180 = t165 * t165; /* link j6: motion */
     const rx90_real_t t181 = t166 * t166;
-    const rx90_real_t t182 = t135 * t135;
+    const rx90_real_t t182 = t135 * t135; /* link j2: motion */
     const rx90_real_t t183 = dq[1] * dq[1];
     const rx90_real_t t184 = RX90_C(-9.81) * t104;
-    const rx90_real_t t185 = t184 + RX90_C(0.45) * (t182 + t183);
-    const rx90_real_t t186 = t134 * t135;
+    const rx90_real_t t185 = t184 + RX90_C(0.45) * (t182 + t183); /* link j3: motion */
+    const rx90_real_t t186 = t134 * t135; /* link j2: motion */
     const rx90_real_t t187 = RX90_C(-9.81) * t102;
-    const rx90_real_t t188 = t187 + RX90_C(-0.45) * t186;
+    const rx90_real_t t188 = t187 + RX90_C(-0.45) * t186; /* link j3: motion */
     const rx90_real_t t189 = t74 * t185 + t73 * t188;
-    const rx90_real_t t190 = t189 + RX90_C(-0.45) * t138;
-    const rx90_real_t t191 = dq[1] * t134;
-    const rx90_real_t t192 = RX90_C(0.9) * t191;
-    const rx90_real_t t193 = t192 - RX90_C(-0.9) * t140;
+    const rx90_real_t t190 = t189 + RX90_C(-0.45) * t138; /* link j4: motion */
+    const rx90_real_t t191 = dq[1] * t134; /* link j2: motion */
+    const rx90_real_t t192 = RX90_C(0.9) * t191; /* link j3: motion */
+    const rx90_real_t t193 = t192 - RX90_C(-0.9) * t140; /* link j4: motion */
     const rx90_real_t t194 = t36 * t190 + t34 * t193;
-    const rx90_real_t t195 = t74 * t188 - t73 * t185;
+    const rx90_real_t t195 = t74 * t188 - t73 * t185; /* link j3: motion */
     const rx90_real_t t196 = t136 * t136;
     const rx90_real_t t197 = t139 * t139;
-    const rx90_real_t t198 = t197 + t196;
+    const rx90_real_t t198 = t197 + t196; /* link j4: motion */
     const rx90_real_t t199 = t195 + RX90_C(0.45) * t198;
-    const rx90_real_t t200 = t14 * t194 - t16 * t199;
+    const rx90_real_t t200 = t14 * t194 - t16 * t199; /* link j5: motion */
     const rx90_real_t t201 = t16 * t194 + t14 * t199;
-    const rx90_real_t t202 = t34 * t190 - t36 * t193;
-    const rx90_real_t t203 = t1 * t201 + t2 * t202;
+    const rx90_real_t t202 = t34 * t190 - t36 * t193; /* link j4: motion */
+    const rx90_real_t t203 = t1 * t201 + t2 * t202; /* link j6: motion */
+    /* link j6: force and moment */
     const rx90_real_t t204 = t174 + parameters[XZ6] * t179 - parameters[YZ6] * (t180 - t181)
         + (parameters[MZ6] * t203 - parameters[MY6] * t200);
     const rx90_real_t t205 = t168 - t167;
     const rx90_real_t t206 = parameters[XY6] * t205 - (parameters[YY6] * t172 + t171 * (parameters[ZZ6]
         - parameters[XX6]));
     const rx90_real_t t207 = t178 - t177;
-    const rx90_real_t t208 = t170 * t170;
+    const rx90_real_t t208 = t170 * t170; /* link j6: motion */
     const rx90_real_t t209 = t2 * t201 - t1 * t202;
+    /* link j6: force and moment */
     const rx90_real_t t210 = t206 + parameters[YZ6] * t207 + parameters[XZ6] * (t181 - t208)
         - (parameters[MZ6] * t209 + parameters[MX6] * t200);
-    const rx90_real_t t211 = t176 + t177;
+    const rx90_real_t t211 = t176 + t177; /* link j6: motion */
+    /* link j5: force and moment */
     const rx90_real_t t212 = t161 * (parameters[YY5] - parameters[ZZ5]) - parameters[XX5] * t162
         + parameters[XY5] * t211;
-    const rx90_real_t t213 = t146 + t149;
-    const rx90_real_t t214 = t148 * t148;
+    const rx90_real_t t213 = t146 + t149; /* link j6: motion */
+    const rx90_real_t t214 = t148 * t148; /* link j5: motion */
     const rx90_real_t t215 = t160 * t160;
+    /* link j5: force and moment */
     const rx90_real_t t216 = t212 - parameters[XZ5] * t213 + parameters[YZ5] * (t215 - t214)
         + (parameters[MY5] * t202 + parameters[MZ5] * t200);
-    const rx90_real_t t217 = t216 + (t2 * t204 + t1 * t210);
+    const rx90_real_t t217 = t216 + (t2 * t204 + t1 * t210); /* link j6: what it passes on */
+    /* link j6: force and moment */
     const rx90_real_t t218 = t6 * t178 - parameters[ZZ6] * t177 - parameters[YZ6] * t169
         + parameters[XZ6] * t164;
     const rx90_real_t t219 = t218 + parameters[XY6] * (t208 - t180) + (parameters[MX6] * t203
         + parameters[MY6] * t209);
+    /* link j5: force and moment */
     const rx90_real_t t220 = parameters[XY5] * t163 - (parameters[YY5] * t177 + t176 * (parameters[ZZ5]
         - parameters[XX5]));
-    const rx90_real_t t221 = t147 * t147;
+    const rx90_real_t t221 = t147 * t147; /* link j5: motion */
+    /* link j5: force and moment */
     const rx90_real_t t222 = t220 + parameters[YZ5] * t150 + parameters[XZ5] * (t215 - t221)
         + (parameters[MX5] * t202 - parameters[MZ5] * t201);
-    const rx90_real_t t223 = t222 + t219;
-    const rx90_real_t t224 = t145 + t146;
+    const rx90_real_t t223 = t222 + t219; /* link j6: what it passes on */
+    const rx90_real_t t224 = t145 + t146; /* link j5: motion */
+    /* link j4: force and moment */
     const rx90_real_t t225 = t153 * (parameters[ZZ4] - parameters[YY4]) - parameters[XX4] * t154
         + parameters[XY4] * t224;
-    const rx90_real_t t226 = t157 + t156;
-    const rx90_real_t t227 = t152 * t152;
+    const rx90_real_t t226 = t157 + t156; /* link j5: motion */
+    const rx90_real_t t227 = t152 * t152; /* link j4: motion */
     const rx90_real_t t228 = t144 * t144;
+    /* link j4: force and moment */
     const rx90_real_t t229 = t225 + parameters[XZ4] * t226 + parameters[YZ4] * (t228 - t227)
         + (parameters[MY4] * t199 + parameters[MZ4] * t202);
-    const rx90_real_t t230 = t229 + (t16 * t217 + t14 * t223);
+    const rx90_real_t t230 = t229 + (t16 * t217 + t14 * t223); /* link j5: what it passes on */
+    /* link j5: force and moment */
     const rx90_real_t t231 = parameters[YZ5] * t175 - (parameters[ZZ5] * t146 + t149 * (parameters[YY5]
         - parameters[XX5]));
     const rx90_real_t t232 = t231 - parameters[XZ5] * t159 + parameters[XY5] * (t214 - t221)
         - (parameters[MX5] * t200 + parameters[MY5] * t201);
-    const rx90_real_t t233 = t232 + (t2 * t210 - t1 * t204);
+    const rx90_real_t t233 = t232 + (t2 * t210 - t1 * t204); /* link j6: what it passes on */
+    /* link j4: force and moment */
     const rx90_real_t t234 = parameters[XY4] * t155 - (parameters[YY4] * t146 + t145 * (parameters[ZZ4]
         - parameters[XX4]));
-    const rx90_real_t t235 = t143 * t143;
+    const rx90_real_t t235 = t143 * t143; /* link j4: motion */
+    /* link j4: force and moment */
     const rx90_real_t t236 = t234 + parameters[YZ4] * t158 + parameters[XZ4] * (t228 - t235)
         + (parameters[MX4] * t199 - parameters[MZ4] * t194);
-    const rx90_real_t t237 = t236 + t233;
+    const rx90_real_t t237 = t236 + t233; /* link j5: what it passes on */
+    /* link j6: force and moment */
     const rx90_real_t t238 = parameters[MX6] * (t180 + t181) + parameters[MY6] * t207
         + parameters[MZ6] * t169;
     const rx90_real_t t239 = parameters[M6] * t209 + t238;
     const rx90_real_t t240 = parameters[MX6] * t179 + parameters[MY6] * (t208 + t181)
         + parameters[MZ6] * t164;
     const rx90_real_t t241 = t240 - parameters[M6] * t203;
+    /* link j5: force and moment */
     const rx90_real_t t242 = parameters[MX5] * (t214 + t215) + parameters[MY5] * t150
         + parameters[MZ5] * t175;
+    /* link j6: what it passes on */
     const rx90_real_t t243 = parameters[M5] * t201 + t242 + (t2 * t239 - t1 * t241);
+    /* link j5: force and moment */
     const rx90_real_t t244 = parameters[MX5] * t213 - parameters[MY5] * (t221 + t215)
         - parameters[MZ5] * t159;
+    /* link j6: force and moment */
     const rx90_real_t t245 = parameters[MX6] * t173 + parameters[MY6] * t205 - parameters[MZ6] * (t208
         + t180);
+    /* link j6: what it passes on */
     const rx90_real_t t246 = parameters[M5] * t200 + t244 + (parameters[M6] * t200 + t245);
+    /* link j4: force and moment */
     const rx90_real_t t247 = parameters[MX4] * (t227 + t228) + parameters[MY4] * t158
         + parameters[MZ4] * t142;
+    /* link j5: what it passes on */
     const rx90_real_t t248 = parameters[M4] * t194 + t247 + (t16 * t243 + t14 * t246);
+    /* link j5: force and moment */
     const rx90_real_t t249 = parameters[MX5] * t211 + parameters[MY5] * t163 - parameters[MZ5] * (t221
         + t214);
+    /* link j6: what it passes on */
     const rx90_real_t t250 = t249 - parameters[M5] * t202 + (t1 * t239 + t2 * t241);
+    /* link j4: force and moment */
     const rx90_real_t t251 = parameters[MX4] * t226 + parameters[MY4] * (t235 + t228)
         + parameters[MZ4] * t151;
-    const rx90_real_t t252 = t251 - parameters[M4] * t202 + t250;
-    const rx90_real_t t253 = t34 * t248 + t36 * t252;
-    const rx90_real_t t254 = RX90_C(2.0) * t157;
+    const rx90_real_t t252 = t251 - parameters[M4] * t202 + t250; /* link j5: what it passes on */
+    const rx90_real_t t253 = t34 * t248 + t36 * t252; /* link j4: what it passes on */
+    const rx90_real_t t254 = RX90_C(2.0) * t157; /* link j4: motion */
+    /* link j3: force and moment */
     const rx90_real_t t255 = parameters[XY3] * t254 - (parameters[XX3] * t140 + t140 * (parameters[ZZ3]
         - parameters[YY3]));
-    const rx90_real_t t256 = t137 * t137;
+    const rx90_real_t t256 = t137 * t137; /* link j3: motion */
+    /* link j3: force and moment */
     const rx90_real_t t257 = t255 - parameters[XZ3] * t138 + parameters[YZ3] * (t197 - t256)
         - (parameters[MY3] * t192 + parameters[MZ3] * t195);
+    /* link j4: what it passes on */
     const rx90_real_t t258 = t257 + (t36 * t230 + t34 * t237 + RX90_C(-0.45) * t253);
+    /* link j4: force and moment */
     const rx90_real_t t259 = parameters[ZZ4] * t157 - t156 * (parameters[XX4] - parameters[YY4])
         + parameters[YZ4] * t142;
     const rx90_real_t t260 = t259 - parameters[XZ4] * t151 - parameters[XY4] * (t235 - t227)
         - (parameters[MX4] * t202 + parameters[MY4] * t194);
-    const rx90_real_t t261 = t260 + (t14 * t217 - t16 * t223);
+    const rx90_real_t t261 = t260 + (t14 * t217 - t16 * t223); /* link j5: what it passes on */
+    /* link j3: force and moment */
     const rx90_real_t t262 = parameters[YY3] * t157 - t157 * (parameters[XX3] - parameters[ZZ3])
         - parameters[XY3] * t141;
     const rx90_real_t t263 = t262 + parameters[YZ3] * t138 - parameters[XZ3] * (t197 - t196)
         + (parameters[MZ3] * t189 + parameters[MX3] * t192);
-    const rx90_real_t t264 = t263 + t261;
-    const rx90_real_t t265 = dq[1] * t135;
+    const rx90_real_t t264 = t263 + t261; /* link j4: what it passes on */
+    const rx90_real_t t265 = dq[1] * t135; /* link j2: motion */
+    /* link j2: force and moment */
     const rx90_real_t t266 = t265 * (parameters[YY2] - parameters[ZZ2]) - t265 * parameters[XX2]
         + RX90_C(2.0) * t191 * parameters[XY2];
     const rx90_real_t t267 = t266 - t186 * parameters[XZ2] + (t183 - t182) * parameters[YZ2]
         - t187 * parameters[MZ2];
+    /* link j3: force and moment */
     const rx90_real_t t268 = parameters[MX3] * t254 + parameters[MY3] * t141 - parameters[MZ3] * (t196
         + t256);
+    /* link j3: what it passes on */
     const rx90_real_t t269 = t73 * t258 + t74 * t264 + RX90_C(0.45) * (parameters[M3] * t192 + t268 + t253);
+    /* link j2: force and moment */
     const rx90_real_t t270 = t191 * parameters[YY2] + t191 * (parameters[ZZ2] - parameters[XX2])
         + RX90_C(-2.0) * t265 * parameters[XY2];
-    const rx90_real_t t271 = t134 * t134;
+    const rx90_real_t t271 = t134 * t134; /* link j2: motion */
+    /* link j2: force and moment */
     const rx90_real_t t272 = t270 + t186 * parameters[YZ2] + (t271 - t183) * parameters[XZ2]
         + t184 * parameters[MZ2];
+    /* link j2: what it passes on */
     const rx90_real_t t273 = t104 * (t267 + (t74 * t258 - t73 * t264)) + t102 * (t272 + t269);
-    const rx90_real_t t274 = rx90_sign(dq[0]);
+    const rx90_real_t t274 = rx90_sign(dq[0]); /* joint j1: coulomb_friction */
     const rx90_real_t t275 = RX90_C(1.0e2) * (RX90_C(-1.0e2) * dq[0] * parameters[FV1]
         - t274 * parameters[FC1]) + t273;
-    const rx90_real_t t276 = rx90_sign(dq[5]);
+    const rx90_real_t t276 = rx90_sign(dq[5]); /* joint j6: coulomb_friction */
     const rx90_real_t t277 = RX90_C(30.0) * (RX90_C(30.0) * dq[5] * parameters[FV6] + t276 * parameters[FC6])
         + t219;
     const rx90_real_t t278 = RX90_C(6.0) * input[5] - t277;
-    const rx90_real_t t279 = rx90_sign(dq[4]);
+    const rx90_real_t t279 = rx90_sign(dq[4]); /* joint j5: coulomb_friction */
     const rx90_real_t t280 = RX90_C(50.0) * (RX90_C(50.0) * dq[4] * parameters[FV5] + t279 * parameters[FC5])
         - t233;
     const rx90_real_t t281 = RX90_C(10.0) * input[4] - t280 - t278 * t5;
     const rx90_real_t t282 = RX90_C(30.0) * input[0] + t275 - t278 * t110 + t281 * t115;
-    const rx90_real_t t283 = rx90_sign(dq[3]);
+    const rx90_real_t t283 = rx90_sign(dq[3]); /* joint j4: coulomb_friction */
     const rx90_real_t t284 = RX90_C(50.0) * (RX90_C(50.0) * dq[3] * parameters[FV4] + t283 * parameters[FC4])
         - t261;
     const rx90_real_t t285 = RX90_C(10.0) * input[3] - t284 + t278 * t30 - t281 * t22;
-    const rx90_real_t t286 = t34 * t252 - t36 * t248;
+    const rx90_real_t t286 = t34 * t252 - t36 * t248; /* link j4: what it passes on */
+    /* link j3: force and moment */
     const rx90_real_t t287 = parameters[XY3] * (t196 - t256) - t138 * (parameters[XX3] - parameters[YY3])
         - (parameters[MX3] * t195 - parameters[MY3] * t189);
+    /* link j4: what it passes on */
     const rx90_real_t t288 = t287 + (t34 * t230 - t36 * t237 - RX90_C(0.45) * t286);
-    const rx90_real_t t289 = rx90_sign(dq[2]);
+    const rx90_real_t t289 = rx90_sign(dq[2]); /* joint j3: coulomb_friction */
     const rx90_real_t t290 = RX90_C(1.0e2) * (RX90_C(1.0e2) * dq[2] * parameters[FV3]
         + t289 * parameters[FC3]) + t288;
     const rx90_real_t t291 = RX90_C(30.0) * input[2] - t290 - t278 * t58 - t281 * t70;
     const rx90_real_t t292 = t291 + t285 * t57;
+    /* link j3: force and moment */
     const rx90_real_t t293 = parameters[M3] * t189 + (parameters[MX3] * (t197 + t256)
         - parameters[MY3] * t138);
+    /* link j4: force and moment */
     const rx90_real_t t294 = parameters[MZ4] * (t235 + t227) - (parameters[MX4] * t224
         + parameters[MY4] * t155);
+    /* link j5: what it passes on */
     const rx90_real_t t295 = parameters[M4] * t199 + t294 - (t16 * t246 - t14 * t243);
+    /* link j4: what it passes on */
     const rx90_real_t t296 = parameters[M3] * t195 + (parameters[MY3] * t198 - parameters[MX3] * t138) + t295;
+    /* link j3: what it passes on */
     const rx90_real_t t297 = t288 + RX90_C(0.45) * (t73 * (t286 - t293) - t74 * t296);
+    /* link j2: force and moment */
     const rx90_real_t t298 = t186 * (parameters[XX2] - parameters[YY2]) - (t271 - t182) * parameters[XY2]
         - (t184 * parameters[MY2] - t187 * parameters[MX2]);
-    const rx90_real_t t299 = rx90_sign(dq[1]);
+    const rx90_real_t t299 = rx90_sign(dq[1]); /* joint j2: coulomb_friction */
     const rx90_real_t t300 = RX90_C(1.0e2) * (RX90_C(1.0e2) * dq[1] * parameters[FV2]
         + t299 * parameters[FC2]) - (t298 - t297);
     const rx90_real_t t301 = RX90_C(30.0) * input[1] - t300 - t278 * t88 + t281 * t87;

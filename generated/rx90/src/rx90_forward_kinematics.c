@@ -28,15 +28,15 @@
  */
 #include "rx90_private.h"
 
-#if RX90_GENERATION != 0xD1F0D18FUL
+#if RX90_GENERATION != 0x88006983UL
 #error "rx90.h and rx90_forward_kinematics.c are of different generations: generate the arm again"
 #endif
 
-int rx90_forward_kinematics(
+rx90_status_t rx90_forward_kinematics(
     const rx90_real_t q[RX90_N_JOINTS],
     rx90_real_t out[16 * RX90_N_LINKS])
 {
-    int status = RX90_STATUS_OK;
+    rx90_status_t status = RX90_STATUS_OK;
 
     if (!rx90_within_joints(q, RX90_C(1.0e8))) {
         status |= RX90_STATUS_INPUT;
@@ -64,7 +64,7 @@ int rx90_forward_kinematics(
     out[5] = t0;
     out[10] = RX90_C(1.0);
     out[15] = RX90_C(1.0);
-    const rx90_real_t t3 = t0 * t2;
+    const rx90_real_t t3 = t0 * t2; /* link j2: pose */
     out[16] = t3;
     const rx90_real_t t5 = t0 * t4;
     out[17] = -t5;
@@ -77,7 +77,7 @@ int rx90_forward_kinematics(
     out[24] = t4;
     out[25] = t2;
     out[31] = RX90_C(1.0);
-    const rx90_real_t t10 = t8 * t3 - t9 * t5;
+    const rx90_real_t t10 = t8 * t3 - t9 * t5; /* link j3: pose */
     out[32] = t10;
     const rx90_real_t t11 = t9 * t3 + t8 * t5;
     out[33] = -t11;
@@ -91,14 +91,14 @@ int rx90_forward_kinematics(
     out[38] = -t0;
     const rx90_real_t t15 = RX90_C(0.45) * t6;
     out[39] = t15;
-    const rx90_real_t t16 = t4 * t8 + t2 * t9;
+    const rx90_real_t t16 = t4 * t8 + t2 * t9; /* link j3: motion */
     out[40] = t16;
     const rx90_real_t t17 = t2 * t8 - t4 * t9;
     out[41] = t17;
-    const rx90_real_t t18 = RX90_C(0.45) * t4;
+    const rx90_real_t t18 = RX90_C(0.45) * t4; /* link j3: pose */
     out[43] = t18;
     out[47] = RX90_C(1.0);
-    const rx90_real_t t21 = t19 * t10 - t1 * t20;
+    const rx90_real_t t21 = t19 * t10 - t1 * t20; /* link j4: pose */
     out[48] = t21;
     const rx90_real_t t22 = t20 * t10 + t1 * t19;
     out[49] = -t22;
@@ -112,15 +112,15 @@ int rx90_forward_kinematics(
     out[54] = -t14;
     const rx90_real_t t26 = t15 + RX90_C(-0.45) * t14;
     out[55] = t26;
-    const rx90_real_t t27 = t19 * t16;
+    const rx90_real_t t27 = t19 * t16; /* link j4: velocities by those of the joints */
     out[56] = t27;
     const rx90_real_t t28 = t20 * t16;
     out[57] = -t28;
     out[58] = t17;
-    const rx90_real_t t29 = t18 + RX90_C(0.45) * t17;
+    const rx90_real_t t29 = t18 + RX90_C(0.45) * t17; /* link j4: pose */
     out[59] = t29;
     out[63] = RX90_C(1.0);
-    const rx90_real_t t32 = t30 * t21 - t31 * t11;
+    const rx90_real_t t32 = t30 * t21 - t31 * t11; /* link j5: pose */
     out[64] = t32;
     const rx90_real_t t33 = t31 * t21 + t30 * t11;
     out[65] = -t33;
@@ -132,7 +132,7 @@ int rx90_forward_kinematics(
     out[69] = -t35;
     out[70] = -t25;
     out[71] = t26;
-    const rx90_real_t t36 = t30 * t27 + t31 * t17;
+    const rx90_real_t t36 = t30 * t27 + t31 * t17; /* link j5: velocities by those of the joints */
     out[72] = t36;
     const rx90_real_t t37 = t30 * t17 - t31 * t27;
     out[73] = t37;

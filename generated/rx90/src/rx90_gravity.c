@@ -78,11 +78,11 @@
  */
 #include "rx90_private.h"
 
-#if RX90_GENERATION != 0xD1F0D18FUL
+#if RX90_GENERATION != 0x88006983UL
 #error "rx90.h and rx90_gravity.c are of different generations: generate the arm again"
 #endif
 
-int rx90_gravity(
+rx90_status_t rx90_gravity(
     const rx90_real_t q[RX90_N_JOINTS],
     const rx90_real_t parameters[RX90_N_PARAMETERS],
     rx90_real_t out[RX90_N_JOINTS])
@@ -90,7 +90,7 @@ int rx90_gravity(
     enum { ZZ1R = 0, XX2R, XY2, XZ2R, YZ2, ZZ2R, MX2R, MY2, XX3R, XY3, XZ3, YZ3, ZZ3R, MX3, MY3R, XX4R, XY4,
         XZ4, YZ4, ZZ4R, MX4, MY4R, XX5R, XY5, XZ5, YZ5, ZZ5R, MX5, MY5R, XX6R, XY6, XZ6, YZ6, ZZ6, MX6, MY6,
         FV1, FC1, FV2, FC2, FV3, FC3, IA3, FV4, FC4, IA4, FV5, FC5, IA5, FV6, FC6, IA6 };
-    int status = RX90_STATUS_OK;
+    rx90_status_t status = RX90_STATUS_OK;
 
     if (!rx90_within_joints(q, RX90_C(1.0e8))
         || !RX90_PARAMETERS_USABLE(rx90_within(parameters, 52, RX90_C(1.0e18)))) {
@@ -111,27 +111,32 @@ int rx90_gravity(
     RX90_SINCOS(q[4], &t9, &t11);
     rx90_real_t t16, t14;
     RX90_SINCOS(q[5], &t16, &t14);
-    const rx90_real_t t1 = RX90_C(-9.81) * t0;
+    const rx90_real_t t1 = RX90_C(-9.81) * t0; /* link j2: motion */
     const rx90_real_t t4 = RX90_C(9.81) * t3;
-    const rx90_real_t t6 = t2 * t1 - t5 * t4;
-    const rx90_real_t t8 = t7 * t6;
-    const rx90_real_t t10 = t5 * t1 + t2 * t4;
-    const rx90_real_t t12 = t9 * t8 + t11 * t10;
-    const rx90_real_t t13 = parameters[MY6] * t12;
+    const rx90_real_t t6 = t2 * t1 - t5 * t4; /* link j3: motion */
+    const rx90_real_t t8 = t7 * t6; /* link j4: motion */
+    const rx90_real_t t10 = t5 * t1 + t2 * t4; /* link j3: motion */
+    const rx90_real_t t12 = t9 * t8 + t11 * t10; /* link j5: motion */
+    const rx90_real_t t13 = parameters[MY6] * t12; /* link j6: force and moment */
     const rx90_real_t t15 = parameters[MX6] * t12;
-    const rx90_real_t t18 = t17 * t6;
-    const rx90_real_t t19 = t14 * t13 + t16 * t15 - parameters[MY5R] * t18;
-    const rx90_real_t t20 = t11 * t8 - t9 * t10;
+    const rx90_real_t t18 = t17 * t6; /* link j4: motion */
+    const rx90_real_t t19 = t14 * t13 + t16 * t15 - parameters[MY5R] * t18; /* link j6: what it passes on */
+    const rx90_real_t t20 = t11 * t8 - t9 * t10; /* link j5: motion */
+    /* link j6: force and moment */
     const rx90_real_t t21 = parameters[MX6] * (t16 * t20 + t14 * t18) + parameters[MY6] * (t14 * t20
         - t16 * t18);
-    const rx90_real_t t22 = parameters[MX5] * t18 + t21;
-    const rx90_real_t t23 = parameters[MY4R] * t10 + (t11 * t19 - t9 * t22);
+    const rx90_real_t t22 = parameters[MX5] * t18 + t21; /* link j6: what it passes on */
+    const rx90_real_t t23 = parameters[MY4R] * t10 + (t11 * t19 - t9 * t22); /* link j5: what it passes on */
+    /* link j6: what it passes on */
     const rx90_real_t t24 = parameters[MX5] * t12 + parameters[MY5R] * t20 + (t14 * t15 - t16 * t13);
-    const rx90_real_t t25 = parameters[MX4] * t10 + t24;
-    const rx90_real_t t26 = t7 * t23 + t17 * t25;
+    const rx90_real_t t25 = parameters[MX4] * t10 + t24; /* link j5: what it passes on */
+    const rx90_real_t t26 = t7 * t23 + t17 * t25; /* link j4: what it passes on */
+    /* link j5: what it passes on */
     const rx90_real_t t27 = parameters[MX4] * t18 + parameters[MY4R] * t8 + (t9 * t19 + t11 * t22);
+    /* link j2: what it passes on */
     const rx90_real_t t28 = t0 * (t2 * t26 - t5 * t27) + t3 * (t5 * t26 + t2 * t27);
     out[0] = RX90_C(0.03333333333333333) * t28;
+    /* link j4: what it passes on */
     const rx90_real_t t29 = parameters[MX3] * t10 + parameters[MY3R] * t6 + (t7 * t25 - t17 * t23);
     out[1] = RX90_C(0.03333333333333333) * (parameters[MX2R] * t4 + parameters[MY2] * t1 + t29);
     out[2] = RX90_C(0.03333333333333333) * t29;

@@ -104,11 +104,11 @@
  */
 #include "rx90_private.h"
 
-#if RX90_GENERATION != 0xD1F0D18FUL
+#if RX90_GENERATION != 0x88006983UL
 #error "rx90.h and rx90_gravity_standard.c are of different generations: generate the arm again"
 #endif
 
-int rx90_gravity_standard(
+rx90_status_t rx90_gravity_standard(
     const rx90_real_t q[RX90_N_JOINTS],
     const rx90_real_t parameters[RX90_N_STANDARD_PARAMETERS],
     rx90_real_t out[RX90_N_JOINTS])
@@ -117,7 +117,7 @@ int rx90_gravity_standard(
         M2, XX3, XY3, XZ3, YY3, YZ3, ZZ3, MX3, MY3, MZ3, M3, XX4, XY4, XZ4, YY4, YZ4, ZZ4, MX4, MY4, MZ4, M4,
         XX5, XY5, XZ5, YY5, YZ5, ZZ5, MX5, MY5, MZ5, M5, XX6, XY6, XZ6, YY6, YZ6, ZZ6, MX6, MY6, MZ6, M6, FV1,
         FC1, IA1, FV2, FC2, IA2, FV3, FC3, IA3, FV4, FC4, IA4, FV5, FC5, IA5, FV6, FC6, IA6 };
-    int status = RX90_STATUS_OK;
+    rx90_status_t status = RX90_STATUS_OK;
 
     if (!rx90_within_joints(q, RX90_C(1.0e8))
         || !RX90_PARAMETERS_USABLE(rx90_within(parameters, 78, RX90_C(1.0e18)))) {
@@ -138,41 +138,50 @@ int rx90_gravity_standard(
     RX90_SINCOS(q[4], &t9, &t11);
     rx90_real_t t14, t17;
     RX90_SINCOS(q[5], &t14, &t17);
-    const rx90_real_t t1 = RX90_C(-9.81) * t0;
+    const rx90_real_t t1 = RX90_C(-9.81) * t0; /* link j2: motion */
     const rx90_real_t t4 = RX90_C(9.81) * t3;
-    const rx90_real_t t6 = t5 * t4 - t2 * t1;
-    const rx90_real_t t8 = t7 * t6;
-    const rx90_real_t t10 = t5 * t1 + t2 * t4;
-    const rx90_real_t t12 = t11 * t10 - t9 * t8;
+    const rx90_real_t t6 = t5 * t4 - t2 * t1; /* link j3: motion */
+    const rx90_real_t t8 = t7 * t6; /* link j4: motion */
+    const rx90_real_t t10 = t5 * t1 + t2 * t4; /* link j3: motion */
+    const rx90_real_t t12 = t11 * t10 - t9 * t8; /* link j5: motion */
     const rx90_real_t t13 = t11 * t8 + t9 * t10;
-    const rx90_real_t t16 = t15 * t6;
-    const rx90_real_t t18 = t14 * t13 + t17 * t16;
-    const rx90_real_t t19 = t12 * parameters[MY6] + t18 * parameters[MZ6];
-    const rx90_real_t t20 = t14 * t16 - t17 * t13;
-    const rx90_real_t t21 = t20 * parameters[MZ6] + t12 * parameters[MX6];
+    const rx90_real_t t16 = t15 * t6; /* link j4: motion */
+    const rx90_real_t t18 = t14 * t13 + t17 * t16; /* link j6: motion */
+    const rx90_real_t t19 = t12 * parameters[MY6] + t18 * parameters[MZ6]; /* link j6: force and moment */
+    const rx90_real_t t20 = t14 * t16 - t17 * t13; /* link j6: motion */
+    const rx90_real_t t21 = t20 * parameters[MZ6] + t12 * parameters[MX6]; /* link j6: force and moment */
+    /* link j6: what it passes on */
     const rx90_real_t t22 = t16 * parameters[MY5] - t12 * parameters[MZ5] + (t17 * t19 + t14 * t21);
-    const rx90_real_t t23 = t20 * parameters[MY6] - t18 * parameters[MX6];
+    const rx90_real_t t23 = t20 * parameters[MY6] - t18 * parameters[MX6]; /* link j6: force and moment */
+    /* link j6: what it passes on */
     const rx90_real_t t24 = t13 * parameters[MZ5] - t16 * parameters[MX5] + t23;
+    /* link j5: what it passes on */
     const rx90_real_t t25 = t10 * parameters[MY4] + t16 * parameters[MZ4] + (t11 * t22 - t9 * t24);
+    /* link j6: what it passes on */
     const rx90_real_t t26 = t12 * parameters[MX5] - t13 * parameters[MY5] + (t17 * t21 - t14 * t19);
+    /* link j5: what it passes on */
     const rx90_real_t t27 = t10 * parameters[MX4] - t8 * parameters[MZ4] + t26;
-    const rx90_real_t t28 = t20 * parameters[M6];
+    const rx90_real_t t28 = t20 * parameters[M6]; /* link j6: force and moment */
     const rx90_real_t t29 = t18 * parameters[M6];
-    const rx90_real_t t30 = t13 * parameters[M5] + (t14 * t29 - t17 * t28);
+    const rx90_real_t t30 = t13 * parameters[M5] + (t14 * t29 - t17 * t28); /* link j6: what it passes on */
     const rx90_real_t t31 = t12 * parameters[M5] + t12 * parameters[M6];
-    const rx90_real_t t32 = t8 * parameters[M4] + (t11 * t30 - t9 * t31);
+    const rx90_real_t t32 = t8 * parameters[M4] + (t11 * t30 - t9 * t31); /* link j5: what it passes on */
     const rx90_real_t t33 = t16 * parameters[M4] + (t16 * parameters[M5] + (t14 * t28 + t17 * t29));
-    const rx90_real_t t34 = RX90_C(0.45) * (t15 * t32 - t7 * t33);
+    const rx90_real_t t34 = RX90_C(0.45) * (t15 * t32 - t7 * t33); /* link j4: what it passes on */
     const rx90_real_t t35 = t7 * t25 + t15 * t27 - t34 - t10 * parameters[MZ3];
+    /* link j5: what it passes on */
     const rx90_real_t t36 = t9 * t22 + t11 * t24 - (t16 * parameters[MX4] + t8 * parameters[MY4]);
-    const rx90_real_t t37 = t6 * parameters[MZ3] + t36;
+    const rx90_real_t t37 = t6 * parameters[MZ3] + t36; /* link j4: what it passes on */
+    /* link j2: what it passes on */
     const rx90_real_t t38 = t0 * (t2 * t35 - t5 * t37 - t4 * parameters[MZ2]);
+    /* link j3: what it passes on */
     const rx90_real_t t39 = t34 + (t5 * t35 + t2 * t37) - t1 * parameters[MZ2];
     out[0] = RX90_C(0.03333333333333333) * (t38 + t3 * t39);
-    const rx90_real_t t40 = t7 * t32 + t15 * t33;
+    const rx90_real_t t40 = t7 * t32 + t15 * t33; /* link j4: what it passes on */
     const rx90_real_t t41 = t10 * parameters[MX3] - t6 * parameters[MY3] + (t7 * t27 - t15 * t25
         + RX90_C(-0.45) * t40);
     const rx90_real_t t42 = t10 * parameters[M3] + (t10 * parameters[M4] + (t9 * t30 + t11 * t31));
+    /* link j3: what it passes on */
     const rx90_real_t t43 = RX90_C(0.45) * (t5 * (t6 * parameters[M3] + t40) + t2 * t42);
     const rx90_real_t t44 = RX90_C(0.03333333333333333) * (t4 * parameters[MX2] + t1 * parameters[MY2] + (t41
         + t43));

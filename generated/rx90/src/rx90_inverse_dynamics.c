@@ -6,7 +6,7 @@
  * Arm rx90, description 10f0505273a073e2.
  * SPDX-License-Identifier: 0BSD
  *
- * Operations: 514 (277 mul, 237 add, 0 neg), 10 trig, 6 other.
+ * Operations: 514 (277 mul, 237 add, 0 neg), 10 trig, 6 other calls (sign, select and the like).
  *
  * @param[in]   q           [6]   [rad]      joint coordinates; norm at most 10000
  * @param[in]   dq          [6]   [rad/s]    joint velocities; norm at most 100000
@@ -80,11 +80,11 @@
  */
 #include "rx90_private.h"
 
-#if RX90_GENERATION != 0xD1F0D18FUL
+#if RX90_GENERATION != 0x88006983UL
 #error "rx90.h and rx90_inverse_dynamics.c are of different generations: generate the arm again"
 #endif
 
-int rx90_inverse_dynamics(
+rx90_status_t rx90_inverse_dynamics(
     const rx90_real_t q[RX90_N_JOINTS],
     const rx90_real_t dq[RX90_N_JOINTS],
     const rx90_real_t ddq[RX90_N_JOINTS],
@@ -94,7 +94,7 @@ int rx90_inverse_dynamics(
     enum { ZZ1R = 0, XX2R, XY2, XZ2R, YZ2, ZZ2R, MX2R, MY2, XX3R, XY3, XZ3, YZ3, ZZ3R, MX3, MY3R, XX4R, XY4,
         XZ4, YZ4, ZZ4R, MX4, MY4R, XX5R, XY5, XZ5, YZ5, ZZ5R, MX5, MY5R, XX6R, XY6, XZ6, YZ6, ZZ6, MX6, MY6,
         FV1, FC1, FV2, FC2, FV3, FC3, IA3, FV4, FC4, IA4, FV5, FC5, IA5, FV6, FC6, IA6 };
-    int status = RX90_STATUS_OK;
+    rx90_status_t status = RX90_STATUS_OK;
 
     if (!rx90_within_joints(q, RX90_C(1.0e8))
         || !rx90_within_joints(dq, RX90_C(1.0e10))
@@ -117,44 +117,44 @@ int rx90_inverse_dynamics(
     RX90_SINCOS(q[4], &t14, &t10);
     rx90_real_t t30, t47;
     RX90_SINCOS(q[5], &t30, &t47);
-    const rx90_real_t t4 = t0 * t1 + t2 * t3;
+    const rx90_real_t t4 = t0 * t1 + t2 * t3; /* link j3: motion */
     const rx90_real_t t5 = dq[0] * t4;
     const rx90_real_t t7 = dq[1] + dq[2];
-    const rx90_real_t t9 = t8 * t7 - t6 * t5;
-    const rx90_real_t t11 = t0 * t3 - t2 * t1;
+    const rx90_real_t t9 = t8 * t7 - t6 * t5; /* link j4: motion */
+    const rx90_real_t t11 = t0 * t3 - t2 * t1; /* link j3: motion */
     const rx90_real_t t12 = dq[0] * t11;
-    const rx90_real_t t13 = t12 - dq[3];
-    const rx90_real_t t15 = t10 * t9 + t14 * t13;
+    const rx90_real_t t13 = t12 - dq[3]; /* link j4: motion */
+    const rx90_real_t t15 = t10 * t9 + t14 * t13; /* link j5: motion */
     const rx90_real_t t16 = t10 * t13 - t14 * t9;
     const rx90_real_t t17 = t15 * t16;
-    const rx90_real_t t18 = t5 * t12;
+    const rx90_real_t t18 = t5 * t12; /* link j3: motion */
     const rx90_real_t t19 = ddq[1] + ddq[2];
-    const rx90_real_t t20 = t18 + t19;
-    const rx90_real_t t21 = t7 * t12;
+    const rx90_real_t t20 = t18 + t19; /* link j4: motion */
+    const rx90_real_t t21 = t7 * t12; /* link j3: motion */
     const rx90_real_t t22 = ddq[0] * t4;
     const rx90_real_t t23 = t21 - t22;
-    const rx90_real_t t24 = t21 + t23;
+    const rx90_real_t t24 = t21 + t23; /* link j4: motion */
     const rx90_real_t t25 = t6 * t20 - t8 * t24;
     const rx90_real_t t26 = t9 * t13;
     const rx90_real_t t27 = t26 + t25;
-    const rx90_real_t t28 = ddq[4] + t27;
-    const rx90_real_t t29 = t28 - t17;
-    const rx90_real_t t31 = t6 * t7 + t8 * t5;
+    const rx90_real_t t28 = ddq[4] + t27; /* link j5: motion */
+    const rx90_real_t t29 = t28 - t17; /* link j6: motion */
+    const rx90_real_t t31 = t6 * t7 + t8 * t5; /* link j4: motion */
     const rx90_real_t t32 = t9 * t31;
-    const rx90_real_t t33 = t7 * t5;
+    const rx90_real_t t33 = t7 * t5; /* link j3: motion */
     const rx90_real_t t34 = ddq[0] * t11;
     const rx90_real_t t35 = t33 + t34;
-    const rx90_real_t t36 = t35 - ddq[3];
-    const rx90_real_t t37 = t32 + t36;
-    const rx90_real_t t38 = t8 * t20 + t6 * t24;
+    const rx90_real_t t36 = t35 - ddq[3]; /* link j4: motion */
+    const rx90_real_t t37 = t32 + t36; /* link j5: motion */
+    const rx90_real_t t38 = t8 * t20 + t6 * t24; /* link j4: motion */
     const rx90_real_t t39 = t31 * t13;
     const rx90_real_t t40 = t38 - t39;
-    const rx90_real_t t41 = t40 - t39;
+    const rx90_real_t t41 = t40 - t39; /* link j5: motion */
     const rx90_real_t t42 = t14 * t37 + t10 * t41;
     const rx90_real_t t43 = dq[4] + t31;
     const rx90_real_t t44 = t16 * t43;
     const rx90_real_t t45 = t44 + t42;
-    const rx90_real_t t46 = t44 + t45;
+    const rx90_real_t t46 = t44 + t45; /* link j6: motion */
     const rx90_real_t t48 = t30 * t29 + t47 * t46;
     const rx90_real_t t49 = t47 * t43 - t30 * t15;
     const rx90_real_t t50 = t16 - dq[5];
@@ -163,156 +163,189 @@ int rx90_inverse_dynamics(
     const rx90_real_t t53 = t30 * t46 - t47 * t29;
     const rx90_real_t t54 = t47 * t15 + t30 * t43;
     const rx90_real_t t55 = t54 * t50;
-    const rx90_real_t t56 = t53 - t55 - t55;
-    const rx90_real_t t57 = t14 * t41 - t10 * t37;
+    const rx90_real_t t56 = t53 - t55 - t55; /* link j6: force and moment */
+    const rx90_real_t t57 = t14 * t41 - t10 * t37; /* link j5: motion */
     const rx90_real_t t58 = t15 * t43;
     const rx90_real_t t59 = t58 + t57;
-    const rx90_real_t t60 = ddq[5] + t59;
+    const rx90_real_t t60 = ddq[5] + t59; /* link j6: motion */
     const rx90_real_t t61 = t54 * t49;
-    const rx90_real_t t62 = t61 + t60;
+    const rx90_real_t t62 = t61 + t60; /* link j6: force and moment */
     const rx90_real_t t63 = parameters[ZZ6] * t51 - parameters[XX6R] * t52 + parameters[XY6] * t56
         + parameters[XZ6] * t62;
-    const rx90_real_t t64 = t49 * t49;
+    const rx90_real_t t64 = t49 * t49; /* link j6: motion */
     const rx90_real_t t65 = t50 * t50;
-    const rx90_real_t t66 = t2 * dq[0];
+    const rx90_real_t t66 = t2 * dq[0]; /* link j2: motion */
     const rx90_real_t t67 = t66 * t66;
     const rx90_real_t t68 = dq[1] * dq[1];
     const rx90_real_t t69 = RX90_C(-9.81) * t0;
-    const rx90_real_t t70 = t69 + RX90_C(0.45) * (t68 + t67);
-    const rx90_real_t t71 = t0 * dq[0];
+    const rx90_real_t t70 = t69 + RX90_C(0.45) * (t68 + t67); /* link j3: motion */
+    const rx90_real_t t71 = t0 * dq[0]; /* link j2: motion */
     const rx90_real_t t72 = t71 * t66;
-    const rx90_real_t t73 = ddq[1] + t72;
-    const rx90_real_t t74 = RX90_C(9.81) * t2;
-    const rx90_real_t t75 = t74 + RX90_C(0.45) * t73;
+    const rx90_real_t t73 = ddq[1] + t72; /* link j3: motion */
+    const rx90_real_t t74 = RX90_C(9.81) * t2; /* link j2: motion */
+    const rx90_real_t t75 = t74 + RX90_C(0.45) * t73; /* link j3: motion */
     const rx90_real_t t76 = t1 * t70 - t3 * t75;
-    const rx90_real_t t77 = t76 + RX90_C(0.45) * t20;
-    const rx90_real_t t78 = dq[1] * t71;
+    const rx90_real_t t77 = t76 + RX90_C(0.45) * t20; /* link j4: motion */
+    const rx90_real_t t78 = dq[1] * t71; /* link j2: motion */
     const rx90_real_t t79 = t2 * ddq[0];
-    const rx90_real_t t80 = t78 + (t78 - t79);
+    const rx90_real_t t80 = t78 + (t78 - t79); /* link j3: motion */
     const rx90_real_t t81 = RX90_C(0.45) * t80;
-    const rx90_real_t t82 = t81 - RX90_C(0.45) * t24;
+    const rx90_real_t t82 = t81 - RX90_C(0.45) * t24; /* link j4: motion */
     const rx90_real_t t83 = t6 * t77 + t8 * t82;
-    const rx90_real_t t84 = t5 * t5;
+    const rx90_real_t t84 = t5 * t5; /* link j3: motion */
     const rx90_real_t t85 = t7 * t7;
-    const rx90_real_t t86 = t85 + t84;
-    const rx90_real_t t87 = t3 * t70 + t1 * t75;
-    const rx90_real_t t88 = RX90_C(-0.45) * t86 + t87;
-    const rx90_real_t t89 = t14 * t83 + t10 * t88;
+    const rx90_real_t t86 = t85 + t84; /* link j4: motion */
+    const rx90_real_t t87 = t3 * t70 + t1 * t75; /* link j3: motion */
+    const rx90_real_t t88 = RX90_C(-0.45) * t86 + t87; /* link j4: motion */
+    const rx90_real_t t89 = t14 * t83 + t10 * t88; /* link j5: motion */
+    /* link j6: force and moment */
     const rx90_real_t t90 = parameters[YZ6] * (t64 - t65) + t63 + parameters[MY6] * t89;
     const rx90_real_t t91 = t52 - t51;
     const rx90_real_t t92 = t61 - t60;
     const rx90_real_t t93 = parameters[XY6] * t91 - (parameters[XX6R] - parameters[ZZ6]) * t55
         + parameters[YZ6] * t92;
-    const rx90_real_t t94 = t54 * t54;
+    const rx90_real_t t94 = t54 * t54; /* link j6: motion */
+    /* link j6: force and moment */
     const rx90_real_t t95 = parameters[XZ6] * (t94 - t65) + t93 + parameters[MX6] * t89;
-    const rx90_real_t t96 = t58 + t59;
+    const rx90_real_t t96 = t58 + t59; /* link j6: motion */
     const rx90_real_t t97 = t17 + t28;
+    /* link j5: force and moment */
     const rx90_real_t t98 = parameters[XY5] * t96 - (parameters[ZZ5R] * t44 + parameters[XX5R] * t45)
         + parameters[XZ5] * t97;
-    const rx90_real_t t99 = t16 * t16;
+    const rx90_real_t t99 = t16 * t16; /* link j5: motion */
     const rx90_real_t t100 = t43 * t43;
-    const rx90_real_t t101 = t8 * t77 - t6 * t82;
+    const rx90_real_t t101 = t8 * t77 - t6 * t82; /* link j4: motion */
+    /* link j6: what it passes on */
     const rx90_real_t t102 = parameters[YZ5] * (t99 - t100) + t98 - parameters[MY5R] * t101 + (t47 * t90
         + t30 * t95);
+    /* link j6: force and moment */
     const rx90_real_t t103 = parameters[ZZ6] * t60 - parameters[XX6R] * t61 + parameters[YZ6] * t53
         - parameters[XZ6] * t48;
-    const rx90_real_t t104 = t10 * t83 - t14 * t88;
+    const rx90_real_t t104 = t10 * t83 - t14 * t88; /* link j5: motion */
+    /* link j6: force and moment */
     const rx90_real_t t105 = parameters[MX6] * (t30 * t104 + t47 * t101) + parameters[MY6] * (t47 * t104
         - t30 * t101);
     const rx90_real_t t106 = parameters[XY6] * (t94 - t64) + t103 + t105;
+    /* link j5: force and moment */
     const rx90_real_t t107 = (parameters[ZZ5R] - parameters[XX5R]) * t58 - parameters[XY5] * t46
         + parameters[YZ5] * t29;
-    const rx90_real_t t108 = t15 * t15;
+    const rx90_real_t t108 = t15 * t15; /* link j5: motion */
+    /* link j6: what it passes on */
     const rx90_real_t t109 = parameters[XZ5] * (t100 - t108) + t107 + parameters[MX5] * t101 + t106;
-    const rx90_real_t t110 = t26 + t27;
+    const rx90_real_t t110 = t26 + t27; /* link j5: motion */
     const rx90_real_t t111 = t32 - t36;
+    /* link j4: force and moment */
     const rx90_real_t t112 = parameters[XX4R] * t40 - parameters[ZZ4R] * t39 + parameters[XY4] * t110
         - parameters[XZ4] * t111;
-    const rx90_real_t t113 = t31 * t31;
+    const rx90_real_t t113 = t31 * t31; /* link j4: motion */
     const rx90_real_t t114 = t13 * t13;
+    /* link j5: what it passes on */
     const rx90_real_t t115 = parameters[YZ4] * (t113 - t114) - t112 + parameters[MY4R] * t88 + (t10 * t102
         - t14 * t109);
+    /* link j5: force and moment */
     const rx90_real_t t116 = parameters[ZZ5R] * t28 - parameters[XX5R] * t17 + parameters[YZ5] * t57
         - parameters[XZ5] * t42;
     const rx90_real_t t117 = parameters[XY5] * (t108 - t99) + t116 + (parameters[MX5] * t89
         + parameters[MY5R] * t104);
-    const rx90_real_t t118 = t117 + (t47 * t95 - t30 * t90);
+    const rx90_real_t t118 = t117 + (t47 * t95 - t30 * t90); /* link j6: what it passes on */
+    /* link j4: force and moment */
     const rx90_real_t t119 = parameters[XY4] * t41 - (parameters[XX4R] - parameters[ZZ4R]) * t26
         + parameters[YZ4] * t37;
-    const rx90_real_t t120 = t9 * t9;
+    const rx90_real_t t120 = t9 * t9; /* link j4: motion */
+    /* link j5: what it passes on */
     const rx90_real_t t121 = parameters[XZ4] * (t120 - t114) + t119 + parameters[MX4] * t88 + t118;
+    /* link j6: force and moment */
     const rx90_real_t t122 = parameters[MY6] * t92 - parameters[MX6] * (t64 + t65);
     const rx90_real_t t123 = parameters[MY6] * (t94 + t65) - parameters[MX6] * t62;
+    /* link j6: what it passes on */
     const rx90_real_t t124 = t47 * t122 + t30 * t123 - (parameters[MX5] * (t99 + t100)
         + parameters[MY5R] * t29);
     const rx90_real_t t125 = parameters[MY5R] * (t108 + t100) - parameters[MX5] * t97 + (parameters[MX6] * t56
         + parameters[MY6] * t91);
+    /* link j5: what it passes on */
     const rx90_real_t t126 = parameters[MY4R] * t37 - parameters[MX4] * (t113 + t114) + (t10 * t124
         + t14 * t125);
+    /* link j6: what it passes on */
     const rx90_real_t t127 = parameters[MX5] * t96 + parameters[MY5R] * t46 - (t47 * t123 - t30 * t122);
+    /* link j5: what it passes on */
     const rx90_real_t t128 = parameters[MY4R] * (t120 + t114) - parameters[MX4] * t111 - t127;
-    const rx90_real_t t129 = t8 * t126 - t6 * t128;
-    const rx90_real_t t130 = t33 + t35;
+    const rx90_real_t t129 = t8 * t126 - t6 * t128; /* link j4: what it passes on */
+    const rx90_real_t t130 = t33 + t35; /* link j4: motion */
     const rx90_real_t t131 = t19 - t18;
+    /* link j3: force and moment */
     const rx90_real_t t132 = parameters[XZ3] * t131 - (parameters[ZZ3R] * t21 + parameters[XX3R] * t23
         + parameters[XY3] * t130);
-    const rx90_real_t t133 = t12 * t12;
+    const rx90_real_t t133 = t12 * t12; /* link j3: motion */
+    /* link j4: what it passes on */
     const rx90_real_t t134 = parameters[MY3R] * t81 + (parameters[YZ3] * (t133 - t85) + t132) + (t6 * t115
         + t8 * t121 + RX90_C(-0.45) * t129);
+    /* link j4: force and moment */
     const rx90_real_t t135 = parameters[XX4R] * t32 + parameters[ZZ4R] * t36 + parameters[YZ4] * t25
         + parameters[XZ4] * t38;
     const rx90_real_t t136 = parameters[XY4] * (t120 - t113) - t135 + (parameters[MX4] * t101
         + parameters[MY4R] * t83);
-    const rx90_real_t t137 = t136 + (t14 * t102 + t10 * t109);
+    const rx90_real_t t137 = t136 + (t14 * t102 + t10 * t109); /* link j5: what it passes on */
+    /* link j3: force and moment */
     const rx90_real_t t138 = (parameters[XX3R] - parameters[ZZ3R]) * t33 - parameters[XY3] * t24
         + parameters[YZ3] * t20;
+    /* link j4: what it passes on */
     const rx90_real_t t139 = parameters[MX3] * t81 - (parameters[XZ3] * (t85 - t84) + t138) - t137;
-    const rx90_real_t t140 = dq[1] * t66;
+    const rx90_real_t t140 = dq[1] * t66; /* link j2: motion */
     const rx90_real_t t141 = t0 * ddq[0];
     const rx90_real_t t142 = t140 + t141;
+    /* link j2: force and moment */
     const rx90_real_t t143 = parameters[ZZ2R] * t140 + parameters[XX2R] * t142 - parameters[XY2] * t80
         + parameters[XZ2R] * t73;
+    /* link j3: what it passes on */
     const rx90_real_t t144 = parameters[YZ2] * (t67 - t68) + t143 + (t1 * t134 + t3 * t139);
     const rx90_real_t t145 = t3 * t134 - t1 * t139 + RX90_C(0.45) * (parameters[MY3R] * t24
         - parameters[MX3] * t130 + t129);
+    /* link j2: force and moment */
     const rx90_real_t t146 = t78 * (parameters[XX2R] - parameters[ZZ2R]) + parameters[XY2] * (t140 + t142)
         + parameters[YZ2] * (ddq[1] - t72);
-    const rx90_real_t t147 = t71 * t71;
+    const rx90_real_t t147 = t71 * t71; /* link j2: motion */
+    /* link j2: what it passes on */
     const rx90_real_t t148 = t0 * t144 + t2 * (parameters[XZ2R] * (t68 - t147) + t146 + t145);
-    const rx90_real_t t149 = rx90_sign(dq[0]);
+    const rx90_real_t t149 = rx90_sign(dq[0]); /* joint j1: coulomb_friction */
     const rx90_real_t t150 = RX90_C(3.3333333333333335) * (parameters[FV1] * (RX90_C(1.0e2) * dq[0])
         + parameters[FC1] * t149) + RX90_C(0.03333333333333333) * (parameters[ZZ1R] * ddq[0] + t148);
     out[0] = t150;
-    const rx90_real_t t151 = t6 * t126 + t8 * t128;
+    const rx90_real_t t151 = t6 * t126 + t8 * t128; /* link j4: what it passes on */
+    /* link j3: force and moment */
     const rx90_real_t t152 = parameters[XX3R] * t18 + parameters[ZZ3R] * t19 - parameters[YZ3] * t34
         + parameters[XZ3] * t22;
     const rx90_real_t t153 = parameters[MX3] * t87 + parameters[MY3R] * t76 + (parameters[XY3] * (t84 - t133)
         + t152);
+    /* link j4: what it passes on */
     const rx90_real_t t154 = t153 + (t6 * t121 - t8 * t115 + RX90_C(-0.45) * t151);
+    /* link j3: what it passes on */
     const rx90_real_t t155 = t3 * (t151 - (parameters[MX3] * (t85 + t133) + parameters[MY3R] * t20));
+    /* link j5: what it passes on */
     const rx90_real_t t156 = parameters[MX4] * t110 - parameters[MY4R] * t41 + (t14 * t124 - t10 * t125);
+    /* link j3: what it passes on */
     const rx90_real_t t157 = t155 + t1 * (parameters[MX3] * t131 - parameters[MY3R] * t86 + t156);
+    /* link j2: force and moment */
     const rx90_real_t t158 = parameters[ZZ2R] * ddq[1] - parameters[XX2R] * t72 + parameters[YZ2] * t79
         + parameters[XZ2R] * t141;
     const rx90_real_t t159 = parameters[MX2R] * t74 + parameters[MY2] * t69 + (parameters[XY2] * (t147 - t67)
         + t158);
-    const rx90_real_t t160 = rx90_sign(dq[1]);
+    const rx90_real_t t160 = rx90_sign(dq[1]); /* joint j2: coulomb_friction */
     const rx90_real_t t161 = RX90_C(3.3333333333333335) * (parameters[FV2] * (RX90_C(1.0e2) * dq[1])
         + parameters[FC2] * t160) + RX90_C(0.03333333333333333) * (t159 + (t154 + RX90_C(0.45) * t157));
     out[1] = t161;
-    const rx90_real_t t162 = rx90_sign(dq[2]);
+    const rx90_real_t t162 = rx90_sign(dq[2]); /* joint j3: coulomb_friction */
     const rx90_real_t t163 = parameters[FV3] * (RX90_C(1.0e2) * dq[2]) + parameters[FC3] * t162
         + parameters[IA3] * (RX90_C(1.0e2) * ddq[2]);
     out[2] = RX90_C(3.3333333333333335) * t163 + RX90_C(0.03333333333333333) * t154;
-    const rx90_real_t t164 = rx90_sign(dq[3]);
+    const rx90_real_t t164 = rx90_sign(dq[3]); /* joint j4: coulomb_friction */
     const rx90_real_t t165 = parameters[FV4] * (RX90_C(50.0) * dq[3]) + parameters[FC4] * t164
         + parameters[IA4] * (RX90_C(50.0) * ddq[3]);
     out[3] = RX90_C(5.0) * t165 + RX90_C(0.1) * t137;
-    const rx90_real_t t166 = rx90_sign(dq[4]);
+    const rx90_real_t t166 = rx90_sign(dq[4]); /* joint j5: coulomb_friction */
     const rx90_real_t t167 = parameters[FV5] * (RX90_C(50.0) * dq[4]) + parameters[FC5] * t166
         + parameters[IA5] * (RX90_C(50.0) * ddq[4]);
     out[4] = RX90_C(5.0) * t167 + RX90_C(0.1) * t118;
-    const rx90_real_t t168 = rx90_sign(dq[5]);
+    const rx90_real_t t168 = rx90_sign(dq[5]); /* joint j6: coulomb_friction */
     const rx90_real_t t169 = parameters[FV6] * (RX90_C(30.0) * dq[5]) + parameters[FC6] * t168
         + parameters[IA6] * (RX90_C(30.0) * ddq[5]);
     out[5] = RX90_C(5.0) * t169 + RX90_C(0.16666666666666666) * t106;

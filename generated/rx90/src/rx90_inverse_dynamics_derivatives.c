@@ -7,16 +7,16 @@
  * Arm rx90, description 10f0505273a073e2.
  * SPDX-License-Identifier: 0BSD
  *
- * Operations: 2246 (1280 mul, 966 add, 0 neg), 10 trig, 6 other.
+ * Operations: 2246 (1280 mul, 966 add, 0 neg), 10 trig, 6 other calls (sign, select and the like).
  *
- * @param[in]   q             [6]   [rad]                joint coordinates; norm at most 10000
- * @param[in]   dq            [6]   [rad/s]              joint velocities; norm at most 100000
- * @param[in]   ddq           [6]   [rad/s^2]            joint accelerations; norm at most 1e+08
- * @param[in]   parameters    [52]                       base parameters; norm at most 1e+09
- * @param[out]  input         [6]   [A]                  inputs: motor currents, efforts where undriven
- * @param[out]  input_by_q    [36]  [(A) per (rad)]      d input / d q; 6 x 6, row-major
- * @param[out]  input_by_dq   [36]  [(A) per (rad/s)]    d input / d dq; 6 x 6, row-major
- * @param[out]  input_by_ddq  [36]  [(A) per (rad/s^2)]  d input / d ddq; 6 x 6, row-major
+ * @param[in]   q             [6]   [rad]              joint coordinates; norm at most 10000
+ * @param[in]   dq            [6]   [rad/s]            joint velocities; norm at most 100000
+ * @param[in]   ddq           [6]   [rad/s^2]          joint accelerations; norm at most 1e+08
+ * @param[in]   parameters    [52]                     base parameters; norm at most 1e+09
+ * @param[out]  input         [6]   [A]                inputs: motor currents, efforts where undriven
+ * @param[out]  input_by_q    [36]  [A per rad]        d input / d q; 6 x 6, row-major
+ * @param[out]  input_by_dq   [36]  [A per (rad/s)]    d input / d dq; 6 x 6, row-major
+ * @param[out]  input_by_ddq  [36]  [A per (rad/s^2)]  d input / d ddq; 6 x 6, row-major
  *
  * Coordinates:
  *
@@ -84,11 +84,11 @@
  */
 #include "rx90_private.h"
 
-#if RX90_GENERATION != 0xD1F0D18FUL
+#if RX90_GENERATION != 0x88006983UL
 #error "rx90.h and rx90_inverse_dynamics_derivatives.c are of different generations: generate the arm again"
 #endif
 
-int rx90_inverse_dynamics_derivatives(
+rx90_status_t rx90_inverse_dynamics_derivatives(
     const rx90_real_t q[RX90_N_JOINTS],
     const rx90_real_t dq[RX90_N_JOINTS],
     const rx90_real_t ddq[RX90_N_JOINTS],
@@ -101,7 +101,7 @@ int rx90_inverse_dynamics_derivatives(
     enum { ZZ1R = 0, XX2R, XY2, XZ2R, YZ2, ZZ2R, MX2R, MY2, XX3R, XY3, XZ3, YZ3, ZZ3R, MX3, MY3R, XX4R, XY4,
         XZ4, YZ4, ZZ4R, MX4, MY4R, XX5R, XY5, XZ5, YZ5, ZZ5R, MX5, MY5R, XX6R, XY6, XZ6, YZ6, ZZ6, MX6, MY6,
         FV1, FC1, FV2, FC2, FV3, FC3, IA3, FV4, FC4, IA4, FV5, FC5, IA5, FV6, FC6, IA6 };
-    int status = RX90_STATUS_OK;
+    rx90_status_t status = RX90_STATUS_OK;
 
     if (!rx90_within_joints(q, RX90_C(1.0e8))
         || !rx90_within_joints(dq, RX90_C(1.0e10))
@@ -127,44 +127,44 @@ int rx90_inverse_dynamics_derivatives(
     RX90_SINCOS(q[4], &t14, &t10);
     rx90_real_t t30, t47;
     RX90_SINCOS(q[5], &t30, &t47);
-    const rx90_real_t t4 = t0 * t1 + t2 * t3;
+    const rx90_real_t t4 = t0 * t1 + t2 * t3; /* link j3: motion */
     const rx90_real_t t5 = dq[0] * t4;
     const rx90_real_t t7 = dq[1] + dq[2];
-    const rx90_real_t t9 = t8 * t7 - t6 * t5;
-    const rx90_real_t t11 = t2 * t1 - t0 * t3;
+    const rx90_real_t t9 = t8 * t7 - t6 * t5; /* link j4: motion */
+    const rx90_real_t t11 = t2 * t1 - t0 * t3; /* link j3: motion */
     const rx90_real_t t12 = dq[0] * t11;
-    const rx90_real_t t13 = dq[3] + t12;
-    const rx90_real_t t15 = t10 * t9 - t14 * t13;
+    const rx90_real_t t13 = dq[3] + t12; /* link j4: motion */
+    const rx90_real_t t15 = t10 * t9 - t14 * t13; /* link j5: motion */
     const rx90_real_t t16 = t14 * t9 + t10 * t13;
     const rx90_real_t t17 = t15 * t16;
-    const rx90_real_t t18 = t5 * t12;
+    const rx90_real_t t18 = t5 * t12; /* link j3: motion */
     const rx90_real_t t19 = ddq[1] + ddq[2];
-    const rx90_real_t t20 = t18 - t19;
-    const rx90_real_t t21 = t7 * t12;
+    const rx90_real_t t20 = t18 - t19; /* link j4: motion */
+    const rx90_real_t t21 = t7 * t12; /* link j3: motion */
     const rx90_real_t t22 = ddq[0] * t4;
     const rx90_real_t t23 = t21 + t22;
-    const rx90_real_t t24 = t21 + t23;
+    const rx90_real_t t24 = t21 + t23; /* link j4: motion */
     const rx90_real_t t25 = t6 * t20 - t8 * t24;
     const rx90_real_t t26 = t9 * t13;
     const rx90_real_t t27 = t26 + t25;
-    const rx90_real_t t28 = t27 - ddq[4];
-    const rx90_real_t t29 = t28 - t17;
-    const rx90_real_t t31 = t6 * t7 + t8 * t5;
+    const rx90_real_t t28 = t27 - ddq[4]; /* link j5: motion */
+    const rx90_real_t t29 = t28 - t17; /* link j6: motion */
+    const rx90_real_t t31 = t6 * t7 + t8 * t5; /* link j4: motion */
     const rx90_real_t t32 = t9 * t31;
-    const rx90_real_t t33 = t7 * t5;
+    const rx90_real_t t33 = t7 * t5; /* link j3: motion */
     const rx90_real_t t34 = ddq[0] * t11;
     const rx90_real_t t35 = t33 - t34;
-    const rx90_real_t t36 = t35 - ddq[3];
-    const rx90_real_t t37 = t32 + t36;
-    const rx90_real_t t38 = t8 * t20 + t6 * t24;
+    const rx90_real_t t36 = t35 - ddq[3]; /* link j4: motion */
+    const rx90_real_t t37 = t32 + t36; /* link j5: motion */
+    const rx90_real_t t38 = t8 * t20 + t6 * t24; /* link j4: motion */
     const rx90_real_t t39 = t31 * t13;
     const rx90_real_t t40 = t39 - t38;
-    const rx90_real_t t41 = t39 + t40;
+    const rx90_real_t t41 = t39 + t40; /* link j5: motion */
     const rx90_real_t t42 = t14 * t37 + t10 * t41;
     const rx90_real_t t43 = dq[4] + t31;
     const rx90_real_t t44 = t16 * t43;
     const rx90_real_t t45 = t42 - t44;
-    const rx90_real_t t46 = t45 - t44;
+    const rx90_real_t t46 = t45 - t44; /* link j6: motion */
     const rx90_real_t t48 = t47 * t46 - t30 * t29;
     const rx90_real_t t49 = t47 * t43 - t30 * t15;
     const rx90_real_t t50 = dq[5] + t16;
@@ -173,160 +173,192 @@ int rx90_inverse_dynamics_derivatives(
     const rx90_real_t t53 = t47 * t29 + t30 * t46;
     const rx90_real_t t54 = t47 * t15 + t30 * t43;
     const rx90_real_t t55 = t54 * t50;
-    const rx90_real_t t56 = t55 + (t55 + t53);
-    const rx90_real_t t57 = t14 * t41 - t10 * t37;
+    const rx90_real_t t56 = t55 + (t55 + t53); /* link j6: force and moment */
+    const rx90_real_t t57 = t14 * t41 - t10 * t37; /* link j5: motion */
     const rx90_real_t t58 = t15 * t43;
     const rx90_real_t t59 = t58 + t57;
-    const rx90_real_t t60 = ddq[5] + t59;
+    const rx90_real_t t60 = ddq[5] + t59; /* link j6: motion */
     const rx90_real_t t61 = t54 * t49;
-    const rx90_real_t t62 = t61 + t60;
+    const rx90_real_t t62 = t61 + t60; /* link j6: force and moment */
     const rx90_real_t t63 = parameters[ZZ6] * t51 + parameters[XX6R] * t52 - parameters[XY6] * t56
         - parameters[XZ6] * t62;
-    const rx90_real_t t64 = t49 * t49;
+    const rx90_real_t t64 = t49 * t49; /* link j6: motion */
     const rx90_real_t t65 = t50 * t50;
-    const rx90_real_t t66 = t2 * dq[0];
+    const rx90_real_t t66 = t2 * dq[0]; /* link j2: motion */
     const rx90_real_t t67 = t66 * t66;
     const rx90_real_t t68 = dq[1] * dq[1];
     const rx90_real_t t69 = RX90_C(9.81) * t0;
-    const rx90_real_t t70 = t69 + RX90_C(-0.45) * (t68 + t67);
-    const rx90_real_t t71 = t0 * dq[0];
+    const rx90_real_t t70 = t69 + RX90_C(-0.45) * (t68 + t67); /* link j3: motion */
+    const rx90_real_t t71 = t0 * dq[0]; /* link j2: motion */
     const rx90_real_t t72 = t71 * t66;
-    const rx90_real_t t73 = ddq[1] + t72;
-    const rx90_real_t t74 = RX90_C(-9.81) * t2;
-    const rx90_real_t t75 = RX90_C(0.45) * t73 - t74;
+    const rx90_real_t t73 = ddq[1] + t72; /* link j3: motion */
+    const rx90_real_t t74 = RX90_C(-9.81) * t2; /* link j2: motion */
+    const rx90_real_t t75 = RX90_C(0.45) * t73 - t74; /* link j3: motion */
     const rx90_real_t t76 = t1 * t70 + t3 * t75;
-    const rx90_real_t t77 = t76 + RX90_C(0.45) * t20;
-    const rx90_real_t t78 = dq[1] * t71;
+    const rx90_real_t t77 = t76 + RX90_C(0.45) * t20; /* link j4: motion */
+    const rx90_real_t t78 = dq[1] * t71; /* link j2: motion */
     const rx90_real_t t79 = t2 * ddq[0];
-    const rx90_real_t t80 = t78 + (t78 - t79);
+    const rx90_real_t t80 = t78 + (t78 - t79); /* link j3: motion */
     const rx90_real_t t81 = RX90_C(0.45) * t80;
-    const rx90_real_t t82 = t81 - RX90_C(-0.45) * t24;
+    const rx90_real_t t82 = t81 - RX90_C(-0.45) * t24; /* link j4: motion */
     const rx90_real_t t83 = t6 * t77 - t8 * t82;
-    const rx90_real_t t84 = t5 * t5;
+    const rx90_real_t t84 = t5 * t5; /* link j3: motion */
     const rx90_real_t t85 = t7 * t7;
-    const rx90_real_t t86 = t85 + t84;
-    const rx90_real_t t87 = t3 * t70 - t1 * t75;
-    const rx90_real_t t88 = RX90_C(0.45) * t86 + t87;
-    const rx90_real_t t89 = t14 * t83 + t10 * t88;
+    const rx90_real_t t86 = t85 + t84; /* link j4: motion */
+    const rx90_real_t t87 = t3 * t70 - t1 * t75; /* link j3: motion */
+    const rx90_real_t t88 = RX90_C(0.45) * t86 + t87; /* link j4: motion */
+    const rx90_real_t t89 = t14 * t83 + t10 * t88; /* link j5: motion */
+    /* link j6: force and moment */
     const rx90_real_t t90 = parameters[YZ6] * (t65 - t64) + t63 + parameters[MY6] * t89;
     const rx90_real_t t91 = t51 + t52;
     const rx90_real_t t92 = t60 - t61;
     const rx90_real_t t93 = (parameters[XX6R] - parameters[ZZ6]) * t55 + parameters[XY6] * t91
         - parameters[YZ6] * t92;
-    const rx90_real_t t94 = t54 * t54;
+    const rx90_real_t t94 = t54 * t54; /* link j6: motion */
+    /* link j6: force and moment */
     const rx90_real_t t95 = parameters[XZ6] * (t94 - t65) + t93 - parameters[MX6] * t89;
-    const rx90_real_t t96 = t58 + t59;
+    const rx90_real_t t96 = t58 + t59; /* link j6: motion */
     const rx90_real_t t97 = t17 + t28;
+    /* link j5: force and moment */
     const rx90_real_t t98 = parameters[ZZ5R] * t44 - parameters[XX5R] * t45 + parameters[XY5] * t96
         - parameters[XZ5] * t97;
-    const rx90_real_t t99 = t16 * t16;
+    const rx90_real_t t99 = t16 * t16; /* link j5: motion */
     const rx90_real_t t100 = t43 * t43;
-    const rx90_real_t t101 = t8 * t77 + t6 * t82;
+    const rx90_real_t t101 = t8 * t77 + t6 * t82; /* link j4: motion */
+    /* link j6: what it passes on */
     const rx90_real_t t102 = parameters[YZ5] * (t99 - t100) + t98 + parameters[MY5R] * t101 + (t30 * t95
         - t47 * t90);
+    /* link j6: force and moment */
     const rx90_real_t t103 = parameters[XX6R] * t61 - parameters[ZZ6] * t60 - parameters[YZ6] * t53
         + parameters[XZ6] * t48;
-    const rx90_real_t t104 = t14 * t88 - t10 * t83;
-    const rx90_real_t t105 = t47 * t101 - t30 * t104;
+    const rx90_real_t t104 = t14 * t88 - t10 * t83; /* link j5: motion */
+    const rx90_real_t t105 = t47 * t101 - t30 * t104; /* link j6: motion */
     const rx90_real_t t106 = t47 * t104 + t30 * t101;
+    /* link j6: force and moment */
     const rx90_real_t t107 = parameters[XY6] * (t64 - t94) + t103 + (parameters[MX6] * t105
         - parameters[MY6] * t106);
+    /* link j5: force and moment */
     const rx90_real_t t108 = (parameters[XX5R] - parameters[ZZ5R]) * t58 + parameters[XY5] * t46
         + parameters[YZ5] * t29;
-    const rx90_real_t t109 = t15 * t15;
+    const rx90_real_t t109 = t15 * t15; /* link j5: motion */
+    /* link j6: what it passes on */
     const rx90_real_t t110 = parameters[XZ5] * (t109 - t100) + t108 + parameters[MX5] * t101 + t107;
-    const rx90_real_t t111 = t26 + t27;
+    const rx90_real_t t111 = t26 + t27; /* link j5: motion */
     const rx90_real_t t112 = t36 - t32;
+    /* link j4: force and moment */
     const rx90_real_t t113 = parameters[ZZ4R] * t39 + parameters[XX4R] * t40 - parameters[XY4] * t111
         + parameters[XZ4] * t112;
-    const rx90_real_t t114 = t31 * t31;
+    const rx90_real_t t114 = t31 * t31; /* link j4: motion */
     const rx90_real_t t115 = t13 * t13;
+    /* link j5: what it passes on */
     const rx90_real_t t116 = parameters[YZ4] * (t115 - t114) + t113 + parameters[MY4R] * t88 - (t10 * t102
         + t14 * t110);
+    /* link j5: force and moment */
     const rx90_real_t t117 = parameters[XX5R] * t17 - parameters[ZZ5R] * t28 + parameters[YZ5] * t57
         - parameters[XZ5] * t42;
     const rx90_real_t t118 = parameters[XY5] * (t109 - t99) + t117 + (parameters[MY5R] * t104
         - parameters[MX5] * t89);
-    const rx90_real_t t119 = t118 + (t30 * t90 + t47 * t95);
+    const rx90_real_t t119 = t118 + (t30 * t90 + t47 * t95); /* link j6: what it passes on */
+    /* link j4: force and moment */
     const rx90_real_t t120 = (parameters[XX4R] - parameters[ZZ4R]) * t26 + parameters[XY4] * t41
         + parameters[YZ4] * t37;
-    const rx90_real_t t121 = t9 * t9;
+    const rx90_real_t t121 = t9 * t9; /* link j4: motion */
+    /* link j5: what it passes on */
     const rx90_real_t t122 = parameters[XZ4] * (t121 - t115) + t120 - parameters[MX4] * t88 + t119;
+    /* link j6: force and moment */
     const rx90_real_t t123 = parameters[MX6] * (t64 + t65) + parameters[MY6] * t92;
     const rx90_real_t t124 = parameters[MY6] * (t94 + t65) - parameters[MX6] * t62;
+    /* link j6: what it passes on */
     const rx90_real_t t125 = parameters[MY5R] * t29 - parameters[MX5] * (t99 + t100) + (t30 * t124
         - t47 * t123);
     const rx90_real_t t126 = parameters[MY5R] * (t109 + t100) + parameters[MX5] * t97 + (parameters[MX6] * t56
         + parameters[MY6] * t91);
+    /* link j5: what it passes on */
     const rx90_real_t t127 = parameters[MX4] * (t114 + t115) - parameters[MY4R] * t37 - (t10 * t125
         + t14 * t126);
+    /* link j6: what it passes on */
     const rx90_real_t t128 = t30 * t123 + t47 * t124 - (parameters[MX5] * t96 + parameters[MY5R] * t46);
+    /* link j5: what it passes on */
     const rx90_real_t t129 = parameters[MY4R] * (t121 + t115) + parameters[MX4] * t112 + t128;
-    const rx90_real_t t130 = t8 * t127 + t6 * t129;
-    const rx90_real_t t131 = t33 + t35;
+    const rx90_real_t t130 = t8 * t127 + t6 * t129; /* link j4: what it passes on */
+    const rx90_real_t t131 = t33 + t35; /* link j4: motion */
     const rx90_real_t t132 = t18 + t19;
+    /* link j3: force and moment */
     const rx90_real_t t133 = parameters[XY3] * t131 - (parameters[ZZ3R] * t21 + parameters[XX3R] * t23)
         - parameters[XZ3] * t132;
-    const rx90_real_t t134 = t12 * t12;
+    const rx90_real_t t134 = t12 * t12; /* link j3: motion */
+    /* link j4: what it passes on */
     const rx90_real_t t135 = parameters[MY3R] * t81 - (parameters[YZ3] * (t85 - t134) + t133) + (t8 * t122
         - t6 * t116 + RX90_C(0.45) * t130);
+    /* link j4: force and moment */
     const rx90_real_t t136 = parameters[XX4R] * t32 + parameters[ZZ4R] * t36 - parameters[YZ4] * t25
         - parameters[XZ4] * t38;
     const rx90_real_t t137 = parameters[XY4] * (t114 - t121) + t136 + (parameters[MX4] * t101
         + parameters[MY4R] * t83);
-    const rx90_real_t t138 = t137 + (t10 * t110 - t14 * t102);
+    const rx90_real_t t138 = t137 + (t10 * t110 - t14 * t102); /* link j5: what it passes on */
+    /* link j3: force and moment */
     const rx90_real_t t139 = (parameters[ZZ3R] - parameters[XX3R]) * t33 - parameters[XY3] * t24
         + parameters[YZ3] * t20;
+    /* link j4: what it passes on */
     const rx90_real_t t140 = parameters[MX3] * t81 + (parameters[XZ3] * (t84 - t85) + t139) + t138;
-    const rx90_real_t t141 = dq[1] * t66;
+    const rx90_real_t t141 = dq[1] * t66; /* link j2: motion */
     const rx90_real_t t142 = t0 * ddq[0];
     const rx90_real_t t143 = t141 + t142;
+    /* link j2: force and moment */
     const rx90_real_t t144 = parameters[ZZ2R] * t141 + parameters[XX2R] * t143 - parameters[XY2] * t80
         + parameters[XZ2R] * t73;
+    /* link j3: what it passes on */
     const rx90_real_t t145 = parameters[YZ2] * (t67 - t68) + t144 + (t1 * t135 + t3 * t140);
     const rx90_real_t t146 = t1 * t140 - t3 * t135 + RX90_C(0.45) * (parameters[MX3] * t131
         + parameters[MY3R] * t24 + t130);
+    /* link j2: force and moment */
     const rx90_real_t t147 = t78 * (parameters[ZZ2R] - parameters[XX2R]) - parameters[XY2] * (t141 + t143)
         + parameters[YZ2] * (t72 - ddq[1]);
-    const rx90_real_t t148 = t71 * t71;
-    const rx90_real_t t149 = parameters[XZ2R] * (t148 - t68) + t147 + t146;
+    const rx90_real_t t148 = t71 * t71; /* link j2: motion */
+    const rx90_real_t t149 = parameters[XZ2R] * (t148 - t68) + t147 + t146; /* link j3: what it passes on */
     const rx90_real_t t150 = RX90_C(0.03333333333333333) * (parameters[ZZ1R] * ddq[0] + (t0 * t145
         - t2 * t149));
-    const rx90_real_t t151 = rx90_sign(dq[0]);
+    const rx90_real_t t151 = rx90_sign(dq[0]); /* joint j1: coulomb_friction */
     const rx90_real_t t152 = RX90_C(3.3333333333333335) * (parameters[FV1] * (RX90_C(1.0e2) * dq[0])
         + parameters[FC1] * t151) + t150;
     input[0] = t152;
-    const rx90_real_t t153 = t8 * t129 - t6 * t127;
+    const rx90_real_t t153 = t8 * t129 - t6 * t127; /* link j4: what it passes on */
+    /* link j3: force and moment */
     const rx90_real_t t154 = parameters[ZZ3R] * t19 - parameters[XX3R] * t18 + parameters[YZ3] * t34
         + parameters[XZ3] * t22;
     const rx90_real_t t155 = parameters[XY3] * (t84 - t134) + t154 - (parameters[MX3] * t87
         + parameters[MY3R] * t76);
+    /* link j4: what it passes on */
     const rx90_real_t t156 = t155 + (t8 * t116 + t6 * t122 + RX90_C(-0.45) * t153);
     const rx90_real_t t157 = parameters[MY3R] * t20 - parameters[MX3] * (t85 + t134) + t153;
+    /* link j5: what it passes on */
     const rx90_real_t t158 = parameters[MX4] * t111 + parameters[MY4R] * t41 + (t10 * t126 - t14 * t125);
+    /* link j4: what it passes on */
     const rx90_real_t t159 = parameters[MY3R] * t86 - parameters[MX3] * t132 + t158;
+    /* link j2: force and moment */
     const rx90_real_t t160 = parameters[ZZ2R] * ddq[1] - parameters[XX2R] * t72 + parameters[YZ2] * t79
         + parameters[XZ2R] * t142;
     const rx90_real_t t161 = parameters[XY2] * (t148 - t67) + t160 - (parameters[MX2R] * t74
         + parameters[MY2] * t69);
+    /* link j3: what it passes on */
     const rx90_real_t t162 = t161 + (t156 + RX90_C(0.45) * (t3 * t157 - t1 * t159));
-    const rx90_real_t t163 = rx90_sign(dq[1]);
+    const rx90_real_t t163 = rx90_sign(dq[1]); /* joint j2: coulomb_friction */
     const rx90_real_t t164 = RX90_C(3.3333333333333335) * (parameters[FV2] * (RX90_C(1.0e2) * dq[1])
         + parameters[FC2] * t163) + RX90_C(0.03333333333333333) * t162;
     input[1] = t164;
-    const rx90_real_t t165 = rx90_sign(dq[2]);
+    const rx90_real_t t165 = rx90_sign(dq[2]); /* joint j3: coulomb_friction */
     const rx90_real_t t166 = parameters[FV3] * (RX90_C(1.0e2) * dq[2]) + parameters[FC3] * t165
         + parameters[IA3] * (RX90_C(1.0e2) * ddq[2]);
     input[2] = RX90_C(3.3333333333333335) * t166 + RX90_C(0.03333333333333333) * t156;
-    const rx90_real_t t167 = rx90_sign(dq[3]);
+    const rx90_real_t t167 = rx90_sign(dq[3]); /* joint j4: coulomb_friction */
     const rx90_real_t t168 = parameters[FV4] * (RX90_C(50.0) * dq[3]) + parameters[FC4] * t167
         + parameters[IA4] * (RX90_C(50.0) * ddq[3]);
     input[3] = RX90_C(5.0) * t168 + RX90_C(-0.1) * t138;
-    const rx90_real_t t169 = rx90_sign(dq[4]);
+    const rx90_real_t t169 = rx90_sign(dq[4]); /* joint j5: coulomb_friction */
     const rx90_real_t t170 = parameters[FV5] * (RX90_C(50.0) * dq[4]) + parameters[FC5] * t169
         + parameters[IA5] * (RX90_C(50.0) * ddq[4]);
     input[4] = RX90_C(5.0) * t170 + RX90_C(0.1) * t119;
-    const rx90_real_t t171 = rx90_sign(dq[5]);
+    const rx90_real_t t171 = rx90_sign(dq[5]); /* joint j6: coulomb_friction */
     const rx90_real_t t172 = parameters[FV6] * (RX90_C(30.0) * dq[5]) + parameters[FC6] * t171
         + parameters[IA6] * (RX90_C(30.0) * ddq[5]);
     input[5] = RX90_C(5.0) * t172 + RX90_C(-0.16666666666666666) * t107;
@@ -339,6 +371,7 @@ int rx90_inverse_dynamics_derivatives(
     const rx90_real_t t179 = parameters[XX6R] - t178;
     const rx90_real_t t180 = t50 * t179 + parameters[XZ6] * t54;
     const rx90_real_t t181 = t50 * t178 - parameters[YZ6] * t49;
+    /* link j6: inertia, momentum beyond */
     const rx90_real_t t182 = t47 * (t175 + t177) + t30 * (t180 + t181);
     const rx90_real_t t183 = t47 * t182;
     const rx90_real_t t184 = parameters[XZ5] * t16;
@@ -356,80 +389,92 @@ int rx90_inverse_dynamics_derivatives(
     const rx90_real_t t196 = t54 * t178 + parameters[XY6] * t49;
     const rx90_real_t t197 = parameters[XX5R] + t193;
     const rx90_real_t t198 = t43 * t197 + parameters[XZ5] * t15 + (t47 * t195 - t30 * t196);
+    /* link j5: inertia, momentum beyond */
     const rx90_real_t t199 = t10 * (t186 + t189) + t14 * (t194 + t198);
     const rx90_real_t t200 = t10 * t199;
     const rx90_real_t t201 = parameters[XZ4] * t31;
     const rx90_real_t t202 = parameters[XY4] * t13;
     const rx90_real_t t203 = t201 + t202 - (t189 - t200);
-    const rx90_real_t t204 = t183 - t175 - (t184 + t188);
+    const rx90_real_t t204 = t183 - t175 - (t184 + t188); /* link j6: inertia, momentum beyond */
     const rx90_real_t t205 = parameters[YZ4] * t9;
-    const rx90_real_t t206 = t202 + t205 + t204;
-    const rx90_real_t t207 = t30 * t182;
+    const rx90_real_t t206 = t202 + t205 + t204; /* link j5: inertia, momentum beyond */
+    const rx90_real_t t207 = t30 * t182; /* link j6: inertia, momentum beyond */
     const rx90_real_t t208 = parameters[ZZ5R] + t193;
     const rx90_real_t t209 = t16 * t208 - parameters[YZ5] * t43 + (t207 - t181);
     const rx90_real_t t210 = parameters[XZ5] * t43 + t15 * t208 - (t30 * t195 + t47 * t196);
     const rx90_real_t t211 = RX90_C(-0.5) * (parameters[XX4R] + parameters[ZZ4R]);
+    /* link j5: inertia, momentum beyond */
     const rx90_real_t t212 = parameters[YZ4] * t31 + t13 * t211 + (t10 * t209 - t14 * t210);
+    /* link j6: inertia, momentum beyond */
     const rx90_real_t t213 = parameters[XY5] * t15 + t16 * t197 + (t180 - t207);
     const rx90_real_t t214 = t47 * t192 - t30 * t191 - (t15 * t193 + parameters[XY5] * t16);
     const rx90_real_t t215 = parameters[XX4R] + t211;
+    /* link j5: inertia, momentum beyond */
     const rx90_real_t t216 = t13 * t215 + parameters[XZ4] * t9 + (t10 * t213 + t14 * t214);
-    const rx90_real_t t217 = t6 * (t203 + t206) + t8 * (t216 - t212);
+    const rx90_real_t t217 = t6 * (t203 + t206) + t8 * (t216 - t212); /* link j4: inertia, momentum beyond */
     const rx90_real_t t218 = t6 * t217;
+    /* link j6: column of the mass matrix */
     const rx90_real_t t219 = t47 * parameters[MY6] + t30 * parameters[MX6];
-    const rx90_real_t t220 = parameters[MY4R] + t219;
+    const rx90_real_t t220 = parameters[MY4R] + t219; /* link j5: inertia of it and all beyond */
+    /* link j6: column of the mass matrix */
     const rx90_real_t t221 = t30 * parameters[MY6] - t47 * parameters[MX6];
-    const rx90_real_t t222 = t221 - parameters[MX5];
-    const rx90_real_t t223 = t14 * parameters[MY5R] + t10 * t222;
-    const rx90_real_t t224 = t223 - parameters[MX4];
-    const rx90_real_t t225 = t8 * t220 + t6 * t224;
-    const rx90_real_t t226 = RX90_C(-0.45) * t7;
-    const rx90_real_t t227 = t225 * t226;
+    const rx90_real_t t222 = t221 - parameters[MX5]; /* link j6: inertia of it and all beyond */
+    const rx90_real_t t223 = t14 * parameters[MY5R] + t10 * t222; /* link j5: column of the mass matrix */
+    const rx90_real_t t224 = t223 - parameters[MX4]; /* link j5: inertia of it and all beyond */
+    const rx90_real_t t225 = t8 * t220 + t6 * t224; /* link j4: column of the mass matrix */
+    const rx90_real_t t226 = RX90_C(-0.45) * t7; /* link j4: velocity of its origin */
+    const rx90_real_t t227 = t225 * t226; /* link j4: inertia, momentum beyond */
     const rx90_real_t t228 = parameters[MY6] * t50;
     const rx90_real_t t229 = parameters[MX6] * t50;
+    /* link j6: inertia, momentum beyond */
     const rx90_real_t t230 = parameters[MY5R] * t43 + (t47 * t228 + t30 * t229);
     const rx90_real_t t231 = parameters[MY6] * t54 - parameters[MX6] * t49;
     const rx90_real_t t232 = t231 - parameters[MX5] * t43;
+    /* link j5: inertia, momentum beyond */
     const rx90_real_t t233 = parameters[MY4R] * t9 - parameters[MX4] * t31 + (t14 * t230 + t10 * t232);
-    const rx90_real_t t234 = RX90_C(-0.45) * t233;
-    const rx90_real_t t235 = t8 * t224 - t6 * t220;
+    const rx90_real_t t234 = RX90_C(-0.45) * t233; /* link j4: inertia, momentum beyond */
+    const rx90_real_t t235 = t8 * t224 - t6 * t220; /* link j4: column of the mass matrix */
     const rx90_real_t t236 = RX90_C(0.45) * t5;
-    const rx90_real_t t237 = t235 * t236;
+    const rx90_real_t t237 = t235 * t236; /* link j4: inertia, momentum beyond */
     const rx90_real_t t238 = t234 + (t237 - t227);
     const rx90_real_t t239 = parameters[XZ3] * t12;
     const rx90_real_t t240 = parameters[XY3] * t7;
     const rx90_real_t t241 = t239 - t240 + (t238 + (t206 - t218 + t227));
-    const rx90_real_t t242 = t201 - t205 + (t200 - t186);
+    const rx90_real_t t242 = t201 - t205 + (t200 - t186); /* link j5: inertia, momentum beyond */
     const rx90_real_t t243 = parameters[YZ3] * t5;
-    const rx90_real_t t244 = t240 - t243 + (t238 + (t242 - t234));
-    const rx90_real_t t245 = t14 * t199;
+    const rx90_real_t t244 = t240 - t243 + (t238 + (t242 - t234)); /* link j4: inertia, momentum beyond */
+    const rx90_real_t t245 = t14 * t199; /* link j5: inertia, momentum beyond */
     const rx90_real_t t246 = parameters[ZZ4R] + t211;
     const rx90_real_t t247 = t31 * t246 + parameters[YZ4] * t13 - (t194 - t245);
     const rx90_real_t t248 = parameters[XZ4] * t13 + t9 * t246 + (t14 * t213 - t10 * t214);
     const rx90_real_t t249 = parameters[MY4R] * t13 + (t10 * t230 - t14 * t232);
+    /* link j6: inertia, momentum beyond */
     const rx90_real_t t250 = parameters[MY5R] * t15 + parameters[MX5] * t16 + (t47 * t229 - t30 * t228);
-    const rx90_real_t t251 = parameters[MX4] * t13 + t250;
-    const rx90_real_t t252 = t6 * t249 + t8 * t251;
-    const rx90_real_t t253 = t10 * parameters[MY5R] - t14 * t222;
+    const rx90_real_t t251 = parameters[MX4] * t13 + t250; /* link j5: inertia, momentum beyond */
+    const rx90_real_t t252 = t6 * t249 + t8 * t251; /* link j4: inertia, momentum beyond */
+    const rx90_real_t t253 = t10 * parameters[MY5R] - t14 * t222; /* link j5: column of the mass matrix */
+    /* link j4: inertia, momentum beyond */
     const rx90_real_t t254 = t6 * t247 + t8 * t248 + (RX90_C(-0.45) * t252 + t253 * t226);
     const rx90_real_t t255 = RX90_C(0.5) * (parameters[XX3R] + parameters[ZZ3R]);
     const rx90_real_t t256 = t254 - (parameters[YZ3] * t12 + t7 * t255);
+    /* link j5: inertia, momentum beyond */
     const rx90_real_t t257 = parameters[XY4] * t9 - t31 * t215 + (t245 - t198);
     const rx90_real_t t258 = parameters[XY4] * t31 - t9 * t211 - (t14 * t209 + t10 * t210);
     const rx90_real_t t259 = parameters[XX3R] - t255;
+    /* link j4: inertia, momentum beyond */
     const rx90_real_t t260 = t7 * t259 - parameters[XZ3] * t5 - (t6 * t257 + t8 * t258);
-    const rx90_real_t t261 = t1 * (t241 - t244) + t3 * (t256 - t260);
+    const rx90_real_t t261 = t1 * (t241 - t244) + t3 * (t256 - t260); /* link j3: inertia, momentum beyond */
     const rx90_real_t t262 = t1 * t261;
-    const rx90_real_t t263 = parameters[MY3R] * t7 + t252;
+    const rx90_real_t t263 = parameters[MY3R] * t7 + t252; /* link j4: inertia, momentum beyond */
     const rx90_real_t t264 = t233 - parameters[MX3] * t7;
-    const rx90_real_t t265 = RX90_C(0.45) * (t1 * t263 - t3 * t264);
-    const rx90_real_t t266 = t225 - parameters[MX3];
+    const rx90_real_t t265 = RX90_C(0.45) * (t1 * t263 - t3 * t264); /* link j3: inertia, momentum beyond */
+    const rx90_real_t t266 = t225 - parameters[MX3]; /* link j4: inertia of it and all beyond */
     const rx90_real_t t267 = parameters[MY3R] + t253;
-    const rx90_real_t t268 = t3 * t266 - t1 * t267;
-    const rx90_real_t t269 = RX90_C(0.45) * dq[1];
-    const rx90_real_t t270 = t268 * t269;
-    const rx90_real_t t271 = RX90_C(-0.45) * t66;
-    const rx90_real_t t272 = t235 * t271;
+    const rx90_real_t t268 = t3 * t266 - t1 * t267; /* link j3: column of the mass matrix */
+    const rx90_real_t t269 = RX90_C(0.45) * dq[1]; /* link j3: velocity of its origin */
+    const rx90_real_t t270 = t268 * t269; /* link j3: inertia, momentum beyond */
+    const rx90_real_t t271 = RX90_C(-0.45) * t66; /* link j3: velocity of its origin */
+    const rx90_real_t t272 = t235 * t271; /* link j3: inertia, momentum beyond */
     const rx90_real_t t273 = t272 - t270 - t265;
     const rx90_real_t t274 = parameters[XZ2R] * t66;
     const rx90_real_t t275 = parameters[XY2] * dq[1];
@@ -439,131 +484,144 @@ int rx90_inverse_dynamics_derivatives(
     const rx90_real_t t279 = t3 * t261;
     const rx90_real_t t280 = RX90_C(0.5) * (parameters[XX2R] + parameters[ZZ2R]);
     const rx90_real_t t281 = parameters[YZ2] * t66 + dq[1] * t280 + (t279 - t256);
-    const rx90_real_t t282 = t3 * t267 + t1 * t266;
+    const rx90_real_t t282 = t3 * t267 + t1 * t266; /* link j3: column of the mass matrix */
+    /* link j3: inertia, momentum beyond */
     const rx90_real_t t283 = RX90_C(0.45) * (t3 * t263 + t1 * t264) + t282 * t269;
     const rx90_real_t t284 = parameters[XX2R] - t280;
     const rx90_real_t t285 = dq[1] * t284 - parameters[XZ2R] * t71 + (t260 + t279 + t283);
+    /* link j2: inertia, momentum beyond */
     const rx90_real_t t286 = t2 * (t2 * (t278 - t276) + t0 * (t281 + t285));
     input_by_dq[0] = RX90_C(333.33333333333337) * parameters[FV1] + RX90_C(0.06666666666666667) * (t276
         + t286);
-    const rx90_real_t t287 = t8 * t217;
+    const rx90_real_t t287 = t8 * t217; /* link j4: inertia, momentum beyond */
     const rx90_real_t t288 = parameters[XY3] * t5 - t12 * t259 - (t216 - t287 - t225 * t236);
     const rx90_real_t t289 = t6 * t251 - t8 * t249;
     const rx90_real_t t290 = t6 * t248 - t8 * t247 + (RX90_C(-0.45) * t289 + t253 * t236);
     const rx90_real_t t291 = t5 * t255 + parameters[XY3] * t12 + t290;
     const rx90_real_t t292 = parameters[MX3] * t12 - parameters[MY3R] * t5 + t289;
+    /* link j3: inertia, momentum beyond */
     const rx90_real_t t293 = t1 * t288 + t3 * t291 + (RX90_C(0.45) * t292 + t282 * t271);
+    /* link j2: derivatives */
     const rx90_real_t t294 = RX90_C(2.0) * (parameters[XY2] * t71 - t66 * t284 + t293);
+    /* link j3: inertia, momentum beyond */
     const rx90_real_t t295 = parameters[XY2] * t66 + t71 * t280 - (t3 * t288 - t1 * t291 + t268 * t271);
-    const rx90_real_t t296 = RX90_C(2.0) * t295;
+    const rx90_real_t t296 = RX90_C(2.0) * t295; /* link j2: derivatives */
     input_by_dq[6] = RX90_C(0.03333333333333333) * (t0 * t294 - t2 * t296);
-    const rx90_real_t t297 = RX90_C(2.0) * t288;
+    const rx90_real_t t297 = RX90_C(2.0) * t288; /* link j3: derivatives */
     const rx90_real_t t298 = RX90_C(2.0) * t291;
-    const rx90_real_t t299 = RX90_C(-0.9) * t66;
-    const rx90_real_t t300 = t1 * t297 + t3 * t298 + t282 * t299;
+    const rx90_real_t t299 = RX90_C(-0.9) * t66; /* link j6: derivatives */
+    const rx90_real_t t300 = t1 * t297 + t3 * t298 + t282 * t299; /* link j3: derivatives */
     const rx90_real_t t301 = t3 * t297 - t1 * t298 + t268 * t299;
     input_by_dq[12] = RX90_C(0.03333333333333333) * (t0 * t300 + t2 * t301);
-    const rx90_real_t t302 = RX90_C(2.0) * t257;
+    const rx90_real_t t302 = RX90_C(2.0) * t257; /* link j4: derivatives */
     const rx90_real_t t303 = RX90_C(2.0) * t258;
     const rx90_real_t t304 = t6 * t302 + t8 * t303;
     const rx90_real_t t305 = RX90_C(2.0) * t242;
-    const rx90_real_t t306 = RX90_C(0.9) * t5;
+    const rx90_real_t t306 = RX90_C(0.9) * t5; /* link j6: derivatives */
     const rx90_real_t t307 = RX90_C(-0.9) * t7;
-    const rx90_real_t t308 = t225 * t307 - t235 * t306 - t305;
-    const rx90_real_t t309 = RX90_C(0.9) * dq[1];
-    const rx90_real_t t310 = t3 * t235;
-    const rx90_real_t t311 = t3 * t308 - t1 * t304 + (t225 * t309 - t310 * t299);
-    const rx90_real_t t312 = t1 * t235;
-    const rx90_real_t t313 = t3 * t304 + t1 * t308 - t312 * t299;
+    const rx90_real_t t308 = t225 * t307 - t235 * t306 - t305; /* link j4: derivatives */
+    const rx90_real_t t309 = RX90_C(0.9) * dq[1]; /* link j6: derivatives */
+    const rx90_real_t t310 = t3 * t235; /* link j4: column of the mass matrix */
+    const rx90_real_t t311 = t3 * t308 - t1 * t304 + (t225 * t309 - t310 * t299); /* link j4: derivatives */
+    const rx90_real_t t312 = t1 * t235; /* link j4: column of the mass matrix */
+    const rx90_real_t t313 = t3 * t304 + t1 * t308 - t312 * t299; /* link j4: derivatives */
     input_by_dq[18] = RX90_C(0.1) * (t0 * t311 - t2 * t313);
-    const rx90_real_t t314 = RX90_C(2.0) * t213;
+    const rx90_real_t t314 = RX90_C(2.0) * t213; /* link j5: derivatives */
     const rx90_real_t t315 = RX90_C(2.0) * t214;
     const rx90_real_t t316 = t10 * t314 + t14 * t315;
     const rx90_real_t t317 = RX90_C(2.0) * t204;
     const rx90_real_t t318 = t6 * t316 - t8 * t317 - t223 * t306;
     const rx90_real_t t319 = t14 * t314 - t10 * t315;
-    const rx90_real_t t320 = t6 * t253;
+    const rx90_real_t t320 = t6 * t253; /* link j5: column of the mass matrix */
     const rx90_real_t t321 = t8 * t253;
-    const rx90_real_t t322 = t319 + (t320 * t306 + t321 * t307);
-    const rx90_real_t t323 = t3 * t320 + t1 * t223;
-    const rx90_real_t t324 = t3 * t322 - t1 * t318 + (t321 * t309 + t323 * t299);
-    const rx90_real_t t325 = t1 * t320 - t3 * t223;
-    const rx90_real_t t326 = t3 * t318 + t1 * t322 + t325 * t299;
+    const rx90_real_t t322 = t319 + (t320 * t306 + t321 * t307); /* link j5: derivatives */
+    const rx90_real_t t323 = t3 * t320 + t1 * t223; /* link j5: column of the mass matrix */
+    const rx90_real_t t324 = t3 * t322 - t1 * t318 + (t321 * t309 + t323 * t299); /* link j5: derivatives */
+    const rx90_real_t t325 = t1 * t320 - t3 * t223; /* link j5: column of the mass matrix */
+    const rx90_real_t t326 = t3 * t318 + t1 * t322 + t325 * t299; /* link j5: derivatives */
     input_by_dq[24] = RX90_C(0.1) * (t0 * t324 - t2 * t326);
-    const rx90_real_t t327 = RX90_C(-2.0) * t195;
+    const rx90_real_t t327 = RX90_C(-2.0) * t195; /* link j6: derivatives */
     const rx90_real_t t328 = RX90_C(2.0) * t196;
     const rx90_real_t t329 = t47 * t327 + t30 * t328;
     const rx90_real_t t330 = RX90_C(2.0) * t187;
     const rx90_real_t t331 = t10 * t329 + t14 * t330;
     const rx90_real_t t332 = t30 * t327 - t47 * t328;
-    const rx90_real_t t333 = t14 * t219;
-    const rx90_real_t t334 = t6 * t331 - t8 * t332 - t333 * t306;
+    const rx90_real_t t333 = t14 * t219; /* link j6: column of the mass matrix */
+    const rx90_real_t t334 = t6 * t331 - t8 * t332 - t333 * t306; /* link j6: derivatives */
     const rx90_real_t t335 = t14 * t329 - t10 * t330;
-    const rx90_real_t t336 = t10 * t219;
+    const rx90_real_t t336 = t10 * t219; /* link j6: column of the mass matrix */
     const rx90_real_t t337 = t6 * t336 - t8 * t221;
     const rx90_real_t t338 = t8 * t336 + t6 * t221;
-    const rx90_real_t t339 = t335 + (t337 * t306 + t338 * t307);
-    const rx90_real_t t340 = t3 * t337 + t1 * t333;
-    const rx90_real_t t341 = t3 * t339 - t1 * t334 + (t338 * t309 + t340 * t299);
-    const rx90_real_t t342 = t1 * t337 - t3 * t333;
-    const rx90_real_t t343 = t3 * t334 + t1 * t339 + t342 * t299;
+    const rx90_real_t t339 = t335 + (t337 * t306 + t338 * t307); /* link j6: derivatives */
+    const rx90_real_t t340 = t3 * t337 + t1 * t333; /* link j6: column of the mass matrix */
+    const rx90_real_t t341 = t3 * t339 - t1 * t334 + (t338 * t309 + t340 * t299); /* link j6: derivatives */
+    const rx90_real_t t342 = t1 * t337 - t3 * t333; /* link j6: column of the mass matrix */
+    const rx90_real_t t343 = t3 * t334 + t1 * t339 + t342 * t299; /* link j6: derivatives */
     input_by_dq[30] = RX90_C(0.16666666666666666) * (t0 * t341 - t2 * t343);
+    /* link j6: inertia of it and all beyond */
     const rx90_real_t t344 = t47 * parameters[XX6R] + parameters[XY6] * (RX90_C(-2.0) * t30);
     const rx90_real_t t345 = t47 * t344;
     const rx90_real_t t346 = parameters[XX5R] + t345;
+    /* link j6: column of the mass matrix */
     const rx90_real_t t347 = t30 * parameters[YZ6] - t47 * parameters[XZ6];
-    const rx90_real_t t348 = parameters[XY5] - t347;
+    const rx90_real_t t348 = parameters[XY5] - t347; /* link j6: inertia of it and all beyond */
+    /* link j5: inertia of it and all beyond */
     const rx90_real_t t349 = t10 * (parameters[ZZ6] - t346) + t348 * (RX90_C(2.0) * t14);
     const rx90_real_t t350 = t10 * t349;
     const rx90_real_t t351 = parameters[XX4R] + (parameters[ZZ6] - t350);
+    /* link j6: inertia of it and all beyond */
     const rx90_real_t t352 = t345 - parameters[XX6R] - parameters[ZZ5R];
     const rx90_real_t t353 = parameters[XY6] + t30 * t344 - parameters[XZ5];
+    /* link j6: column of the mass matrix */
     const rx90_real_t t354 = t30 * parameters[XZ6] + t47 * parameters[YZ6];
-    const rx90_real_t t355 = parameters[YZ5] - t354;
-    const rx90_real_t t356 = t10 * t353 + t14 * t355;
-    const rx90_real_t t357 = parameters[XY4] + t356;
+    const rx90_real_t t355 = parameters[YZ5] - t354; /* link j6: inertia of it and all beyond */
+    const rx90_real_t t356 = t10 * t353 + t14 * t355; /* link j5: column of the mass matrix */
+    const rx90_real_t t357 = parameters[XY4] + t356; /* link j5: inertia of it and all beyond */
+    /* link j4: inertia of it and all beyond */
     const rx90_real_t t358 = t6 * (t352 + t351) + t357 * (RX90_C(-2.0) * t8);
     const rx90_real_t t359 = t6 * t358;
     const rx90_real_t t360 = RX90_C(0.9) * t253;
     const rx90_real_t t361 = parameters[XX3R] + (t359 - t352 + t360);
-    const rx90_real_t t362 = parameters[ZZ4R] + (t346 + t350);
+    const rx90_real_t t362 = parameters[ZZ4R] + (t346 + t350); /* link j5: inertia of it and all beyond */
     const rx90_real_t t363 = t14 * t349 - t348 - parameters[XZ4];
-    const rx90_real_t t364 = t14 * t353 - t10 * t355;
-    const rx90_real_t t365 = parameters[YZ4] + t364;
-    const rx90_real_t t366 = RX90_C(0.45) * t225;
+    const rx90_real_t t364 = t14 * t353 - t10 * t355; /* link j5: column of the mass matrix */
+    const rx90_real_t t365 = parameters[YZ4] + t364; /* link j5: inertia of it and all beyond */
+    const rx90_real_t t366 = RX90_C(0.45) * t225; /* link j4: column of the mass matrix */
     const rx90_real_t t367 = t6 * t363 + t8 * t365 - t366;
-    const rx90_real_t t368 = t367 - parameters[XY3];
+    const rx90_real_t t368 = t367 - parameters[XY3]; /* link j4: inertia of it and all beyond */
+    /* link j3: inertia of it and all beyond */
     const rx90_real_t t369 = t1 * (t361 - t362) - t368 * (RX90_C(-2.0) * t3);
     const rx90_real_t t370 = t1 * t369;
     const rx90_real_t t371 = RX90_C(0.9) * t282;
     const rx90_real_t t372 = t361 - t370 - t371;
     const rx90_real_t t373 = parameters[XX2R] + (t362 + t370);
     const rx90_real_t t374 = parameters[XY2] + (t3 * t369 - t368 + RX90_C(0.45) * t268);
+    /* link j2: inertia of it and all beyond */
     const rx90_real_t t375 = t2 * (t2 * (t372 - t373) + t374 * (RX90_C(2.0) * t0));
     input_by_ddq[0] = RX90_C(0.03333333333333333) * (parameters[ZZ1R] + (t373 + t375));
-    const rx90_real_t t376 = t357 + t8 * t358 - parameters[XZ3];
-    const rx90_real_t t377 = RX90_C(-0.45) * t235;
+    const rx90_real_t t376 = t357 + t8 * t358 - parameters[XZ3]; /* link j4: inertia of it and all beyond */
+    const rx90_real_t t377 = RX90_C(-0.45) * t235; /* link j4: column of the mass matrix */
     const rx90_real_t t378 = t8 * t363 - t6 * t365 + t377;
-    const rx90_real_t t379 = parameters[YZ3] + t378;
-    const rx90_real_t t380 = t1 * t376 + t3 * t379;
-    const rx90_real_t t381 = parameters[XZ2R] + (t377 - t380);
-    const rx90_real_t t382 = t3 * t376 - t1 * t379;
-    const rx90_real_t t383 = t382 - parameters[YZ2];
+    const rx90_real_t t379 = parameters[YZ3] + t378; /* link j4: inertia of it and all beyond */
+    const rx90_real_t t380 = t1 * t376 + t3 * t379; /* link j3: column of the mass matrix */
+    const rx90_real_t t381 = parameters[XZ2R] + (t377 - t380); /* link j3: inertia of it and all beyond */
+    const rx90_real_t t382 = t3 * t376 - t1 * t379; /* link j3: column of the mass matrix */
+    const rx90_real_t t383 = t382 - parameters[YZ2]; /* link j3: inertia of it and all beyond */
     const rx90_real_t t384 = RX90_C(0.03333333333333333) * (t0 * t381 - t2 * t383);
     input_by_ddq[6] = t384;
     const rx90_real_t t385 = RX90_C(-0.03333333333333333) * (t0 * t380 + t2 * t382);
     input_by_ddq[12] = t385;
-    const rx90_real_t t386 = t1 * t367 + t3 * t362;
+    const rx90_real_t t386 = t1 * t367 + t3 * t362; /* link j4: column of the mass matrix */
     const rx90_real_t t387 = t366 + (t3 * t367 - t1 * t362);
     const rx90_real_t t388 = t0 * t386 + t2 * t387;
     input_by_ddq[18] = RX90_C(-0.1) * t388;
-    const rx90_real_t t389 = RX90_C(0.45) * t321;
+    const rx90_real_t t389 = RX90_C(0.45) * t321; /* link j5: column of the mass matrix */
     const rx90_real_t t390 = t6 * t356 + t8 * t352 - t389;
     const rx90_real_t t391 = t3 * t364 - t1 * t390;
     const rx90_real_t t392 = t389 + (t3 * t390 + t1 * t364);
     const rx90_real_t t393 = t0 * t391 - t2 * t392;
     input_by_ddq[24] = RX90_C(0.1) * t393;
-    const rx90_real_t t394 = t10 * t347 + t14 * parameters[ZZ6];
+    const rx90_real_t t394 = t10 * t347 + t14 * parameters[ZZ6]; /* link j6: column of the mass matrix */
     const rx90_real_t t395 = RX90_C(0.45) * t338;
     const rx90_real_t t396 = t6 * t394 + t8 * t354 - t395;
     const rx90_real_t t397 = t14 * t347 - t10 * parameters[ZZ6];
@@ -571,55 +629,71 @@ int rx90_inverse_dynamics_derivatives(
     const rx90_real_t t399 = t395 + (t3 * t396 + t1 * t397);
     const rx90_real_t t400 = t0 * t398 - t2 * t399;
     input_by_ddq[30] = RX90_C(0.16666666666666666) * t400;
-    const rx90_real_t t401 = RX90_C(2.0) * t66;
+    const rx90_real_t t401 = RX90_C(2.0) * t66; /* link j2: derivatives */
     const rx90_real_t t402 = RX90_C(-2.0) * t71;
-    const rx90_real_t t403 = t148 + t67;
+    const rx90_real_t t403 = t148 + t67; /* link j3: motion */
+    /* link j2: derivatives */
     const rx90_real_t t404 = t276 * t401 + t281 * t402 + (t373 * t79 - t374 * t142 - t381 * t403);
     const rx90_real_t t405 = t285 * t401 + t278 * t402 + (t374 * t79 - t372 * t142 + t383 * t403);
     const rx90_real_t t406 = t0 * (t149 + (t404 + t235 * t69)) + t2 * (t145 + (t405 - t235 * t74));
     input_by_q[1] = RX90_C(0.03333333333333333) * t406;
+    /* link j4: inertia of it and all beyond */
     const rx90_real_t t407 = parameters[ZZ3R] + (t351 - t359 + t360);
-    const rx90_real_t t408 = parameters[ZZ2R] + (t407 - t371);
+    const rx90_real_t t408 = parameters[ZZ2R] + (t407 - t371); /* link j3: inertia of it and all beyond */
+    /* link j2: derivatives */
     const rx90_real_t t409 = t381 * t79 + t383 * t142 - t408 * t403 + (t66 * t294 + t71 * t296);
     const rx90_real_t t410 = (t282 - parameters[MX2R]) * t69 - (t268 - parameters[MY2]) * t74 + t409;
     input_by_q[7] = RX90_C(0.03333333333333333) * t410;
-    const rx90_real_t t411 = t407 - RX90_C(0.45) * t282;
+    const rx90_real_t t411 = t407 - RX90_C(0.45) * t282; /* link j3: column of the mass matrix */
+    /* link j3: derivatives */
     const rx90_real_t t412 = t66 * t300 - t71 * t301 + (t382 * t142 - t380 * t79 - t411 * t403);
     input_by_q[13] = RX90_C(0.03333333333333333) * (t412 + (t282 * t69 - t268 * t74));
-    const rx90_real_t t413 = t378 + RX90_C(0.45) * t310;
+    const rx90_real_t t413 = t378 + RX90_C(0.45) * t310; /* link j4: column of the mass matrix */
+    /* link j4: derivatives */
     const rx90_real_t t414 = t66 * t311 + t71 * t313 + (t387 * t142 - t386 * t79 - t413 * t403);
     input_by_q[19] = RX90_C(0.1) * (t414 - (t312 * t74 + t310 * t69));
+    /* link j5: column of the mass matrix */
     const rx90_real_t t415 = t8 * t356 - t6 * t352 + RX90_C(0.45) * t320;
     const rx90_real_t t416 = t415 + RX90_C(-0.45) * t323;
+    /* link j5: derivatives */
     const rx90_real_t t417 = t66 * t324 + t71 * t326 + (t391 * t79 + t392 * t142 - t416 * t403);
     input_by_q[25] = RX90_C(0.1) * (t417 + (t325 * t74 + t323 * t69));
+    /* link j6: column of the mass matrix */
     const rx90_real_t t418 = t8 * t394 - t6 * t354 + RX90_C(0.45) * t337;
     const rx90_real_t t419 = t418 + RX90_C(-0.45) * t340;
+    /* link j6: derivatives */
     const rx90_real_t t420 = t66 * t341 + t71 * t343 + (t398 * t79 + t399 * t142 - t419 * t403);
     input_by_q[31] = RX90_C(0.16666666666666666) * (t420 + (t342 * t74 + t340 * t69));
     const rx90_real_t t421 = t255 - parameters[ZZ3R];
+    /* link j4: inertia, momentum beyond */
     const rx90_real_t t422 = t212 + t287 - t235 * t226 - (parameters[YZ3] * t7 + t12 * t421);
     const rx90_real_t t423 = parameters[XZ3] * t7 + t5 * t421 + (t8 * t257 - t6 * t258);
     const rx90_real_t t424 = parameters[ZZ2R] - t280;
+    /* link j3: inertia, momentum beyond */
     const rx90_real_t t425 = t66 * t424 - parameters[YZ2] * dq[1] + (t1 * t422 - t3 * t423);
+    /* link j2: derivatives */
     const rx90_real_t t426 = t0 * (RX90_C(2.0) * t425 + (t373 * t401 + t374 * t402));
+    /* link j3: inertia, momentum beyond */
     const rx90_real_t t427 = parameters[XZ2R] * dq[1] - t71 * t424 + (t3 * t422 + t1 * t423 - t235 * t269);
+    /* link j2: derivatives */
     const rx90_real_t t428 = t2 * (RX90_C(2.0) * t427 + (t374 * t401 + t372 * t402));
     input_by_dq[1] = RX90_C(0.03333333333333333) * (t426 + t428);
+    /* link j4: inertia, momentum beyond */
     const rx90_real_t t429 = t243 - t239 + (t238 + (t218 - t203 - t237));
+    /* link j2: derivatives */
     const rx90_real_t t430 = RX90_C(2.0) * (t277 - t274 + (t273 + (t429 - t272))) + RX90_C(2.0) * (t381 * t66
         + t383 * t71);
     input_by_dq[7] = RX90_C(333.33333333333337) * parameters[FV2] + RX90_C(0.03333333333333333) * t430;
-    const rx90_real_t t431 = RX90_C(2.0) * t429;
+    const rx90_real_t t431 = RX90_C(2.0) * t429; /* link j3: derivatives */
     const rx90_real_t t432 = t431 - t268 * t309 + RX90_C(2.0) * (t382 * t71 - t380 * t66);
     input_by_dq[13] = RX90_C(0.03333333333333333) * t432;
-    const rx90_real_t t433 = t8 * t302 - t6 * t303;
+    const rx90_real_t t433 = t8 * t302 - t6 * t303; /* link j4: derivatives */
     const rx90_real_t t434 = t433 - t312 * t309 + RX90_C(2.0) * (t387 * t71 - t386 * t66);
     input_by_dq[19] = RX90_C(0.1) * t434;
-    const rx90_real_t t435 = t8 * t316 + t6 * t317 - t223 * t307;
+    const rx90_real_t t435 = t8 * t316 + t6 * t317 - t223 * t307; /* link j5: derivatives */
     const rx90_real_t t436 = t435 + t325 * t309 + RX90_C(2.0) * (t391 * t66 + t392 * t71);
     input_by_dq[25] = RX90_C(0.1) * t436;
-    const rx90_real_t t437 = t8 * t331 + t6 * t332 - t333 * t307;
+    const rx90_real_t t437 = t8 * t331 + t6 * t332 - t333 * t307; /* link j6: derivatives */
     const rx90_real_t t438 = t437 + t342 * t309 + RX90_C(2.0) * (t398 * t66 + t399 * t71);
     input_by_dq[31] = RX90_C(0.16666666666666666) * t438;
     input_by_ddq[1] = t384;
@@ -629,15 +703,17 @@ int rx90_inverse_dynamics_derivatives(
     input_by_ddq[19] = RX90_C(0.1) * t413;
     input_by_ddq[25] = RX90_C(0.1) * t416;
     input_by_ddq[31] = RX90_C(0.16666666666666666) * t419;
-    const rx90_real_t t440 = RX90_C(-2.0) * t12;
+    const rx90_real_t t440 = RX90_C(-2.0) * t12; /* link j3: derivatives */
     const rx90_real_t t441 = RX90_C(2.0) * t5;
-    const rx90_real_t t442 = t84 + t134;
+    const rx90_real_t t442 = t84 + t134; /* link j4: motion */
+    /* link j3: derivatives */
     const rx90_real_t t443 = t256 * t441 - t241 * t440 + (t361 * t34 + t368 * t22 + t376 * t442);
     const rx90_real_t t444 = t140 + (t443 + t235 * t76);
-    const rx90_real_t t445 = t362 * t22;
+    const rx90_real_t t445 = t362 * t22; /* link j4: derivatives */
+    /* link j3: derivatives */
     const rx90_real_t t446 = t260 * t440 + t244 * t441 + (t445 + t368 * t34 + t379 * t442);
-    const rx90_real_t t447 = t235 * t87;
-    const rx90_real_t t448 = t135 - (t447 + t446);
+    const rx90_real_t t447 = t235 * t87; /* link j4: derivatives */
+    const rx90_real_t t448 = t135 - (t447 + t446); /* link j3: derivatives */
     const rx90_real_t t449 = t263 * t441 - t264 * t440 + (t266 * t22 - t267 * t34);
     const rx90_real_t t450 = t2 * (t3 * t444 + t1 * t448 + RX90_C(0.45) * t449);
     const rx90_real_t t451 = RX90_C(0.03333333333333333) * (t0 * (t1 * t444 - t3 * t448) + t450);
@@ -650,13 +726,16 @@ int rx90_inverse_dynamics_derivatives(
     input_by_q[8] = RX90_C(0.03333333333333333) * t456;
     const rx90_real_t t457 = RX90_C(0.03333333333333333) * (t455 + (t12 * t297 + t5 * t298 - t454));
     input_by_q[14] = t457;
+    /* link j4: derivatives */
     const rx90_real_t t458 = t5 * t308 - t12 * t304 - (t367 * t34 + t445 + t378 * t442);
     input_by_q[20] = RX90_C(0.1) * (t458 - t447);
+    /* link j5: derivatives */
     const rx90_real_t t459 = t5 * t322 - t12 * t318 + (t364 * t22 - t390 * t34 - t415 * t442);
     input_by_q[26] = RX90_C(0.1) * (t459 + (t320 * t87 + t223 * t76));
+    /* link j6: derivatives */
     const rx90_real_t t460 = t5 * t339 - t12 * t334 + (t397 * t22 - t396 * t34 - t418 * t442);
     input_by_q[32] = RX90_C(0.16666666666666666) * (t460 + (t337 * t87 + t333 * t76));
-    const rx90_real_t t461 = RX90_C(2.0) * t422 + (t368 * t441 - t361 * t440);
+    const rx90_real_t t461 = RX90_C(2.0) * t422 + (t368 * t441 - t361 * t440); /* link j3: derivatives */
     const rx90_real_t t462 = RX90_C(2.0) * t423 - (t362 * t441 - t368 * t440);
     const rx90_real_t t463 = t3 * t461 + t1 * t462 + RX90_C(0.45) * (t267 * t440 + t266 * t441);
     const rx90_real_t t464 = t0 * (t1 * t461 - t3 * t462) + t2 * t463;
@@ -679,15 +758,17 @@ int rx90_inverse_dynamics_derivatives(
     input_by_ddq[20] = RX90_C(0.1) * t378;
     input_by_ddq[26] = RX90_C(0.1) * t415;
     input_by_ddq[32] = RX90_C(0.16666666666666666) * t418;
-    const rx90_real_t t471 = RX90_C(2.0) * t31;
+    const rx90_real_t t471 = RX90_C(2.0) * t31; /* link j4: derivatives */
     const rx90_real_t t472 = RX90_C(-2.0) * t9;
-    const rx90_real_t t473 = t121 + t114;
+    const rx90_real_t t473 = t121 + t114; /* link j5: motion */
+    /* link j4: derivatives */
     const rx90_real_t t474 = t203 * t471 + t212 * t472 - (t357 * t38 - t351 * t25 - t363 * t473);
     const rx90_real_t t475 = t122 + (t474 + t253 * t83);
-    const rx90_real_t t476 = t352 * t38;
+    const rx90_real_t t476 = t352 * t38; /* link j5: derivatives */
+    /* link j4: derivatives */
     const rx90_real_t t477 = t216 * t471 + t206 * t472 + (t365 * t473 - (t476 + t357 * t25));
-    const rx90_real_t t478 = t253 * t101;
-    const rx90_real_t t479 = t116 + (t478 + t477);
+    const rx90_real_t t478 = t253 * t101; /* link j5: derivatives */
+    const rx90_real_t t479 = t116 + (t478 + t477); /* link j4: derivatives */
     const rx90_real_t t480 = t127 + (t233 * t471 + (t253 * t25 - t224 * t473));
     const rx90_real_t t481 = t129 + (t233 * t472 + (t220 * t473 - t253 * t38));
     const rx90_real_t t482 = RX90_C(0.45) * (t8 * t481 - t6 * t480);
@@ -705,11 +786,13 @@ int rx90_inverse_dynamics_derivatives(
     input_by_q[15] = RX90_C(0.03333333333333333) * t489;
     const rx90_real_t t492 = RX90_C(0.1) * (t485 + (t31 * t302 + t9 * t303 - t484));
     input_by_q[21] = t492;
+    /* link j5: derivatives */
     const rx90_real_t t493 = t31 * t316 - t9 * t317 + (t364 * t473 - (t356 * t25 + t476));
     input_by_q[27] = RX90_C(0.1) * (t493 + t478);
+    /* link j6: derivatives */
     const rx90_real_t t494 = t31 * t331 - t9 * t332 + (t397 * t473 - (t394 * t25 + t354 * t38));
     input_by_q[33] = RX90_C(0.16666666666666666) * (t494 + (t336 * t101 + t221 * t83));
-    const rx90_real_t t495 = RX90_C(2.0) * t247 + (t351 * t471 + t357 * t472);
+    const rx90_real_t t495 = RX90_C(2.0) * t247 + (t351 * t471 + t357 * t472); /* link j4: derivatives */
     const rx90_real_t t496 = RX90_C(-2.0) * t248 + (t357 * t471 - t352 * t472);
     const rx90_real_t t497 = RX90_C(2.0) * t251 + t253 * t472;
     const rx90_real_t t498 = RX90_C(2.0) * t249 - t253 * t471;
@@ -736,15 +819,17 @@ int rx90_inverse_dynamics_derivatives(
     const rx90_real_t t509 = RX90_C(-0.1) * t364;
     input_by_ddq[27] = t509;
     input_by_ddq[33] = RX90_C(-0.16666666666666666) * t397;
-    const rx90_real_t t510 = RX90_C(2.0) * t16;
+    const rx90_real_t t510 = RX90_C(2.0) * t16; /* link j5: derivatives */
     const rx90_real_t t511 = RX90_C(2.0) * t15;
-    const rx90_real_t t512 = t109 + t99;
+    const rx90_real_t t512 = t109 + t99; /* link j6: motion */
+    /* link j5: derivatives */
     const rx90_real_t t513 = t194 * t511 - t186 * t510 + (t346 * t57 + t348 * t42 + t353 * t512);
     const rx90_real_t t514 = t110 + (t513 + t219 * t104);
-    const rx90_real_t t515 = parameters[ZZ6] * t42;
+    const rx90_real_t t515 = parameters[ZZ6] * t42; /* link j6: derivatives */
+    /* link j5: derivatives */
     const rx90_real_t t516 = t198 * t510 + t189 * t511 + (t515 + t348 * t57 - t355 * t512);
-    const rx90_real_t t517 = t219 * t89;
-    const rx90_real_t t518 = t102 + (t517 + t516);
+    const rx90_real_t t517 = t219 * t89; /* link j6: derivatives */
+    const rx90_real_t t518 = t102 + (t517 + t516); /* link j5: derivatives */
     const rx90_real_t t519 = t10 * t514 - t14 * t518;
     const rx90_real_t t520 = t355 * t42 - t353 * t57 + t352 * t512;
     const rx90_real_t t521 = parameters[MY5R] * t89 - t222 * t104;
@@ -766,9 +851,10 @@ int rx90_inverse_dynamics_derivatives(
     input_by_q[22] = RX90_C(0.1) * t529;
     const rx90_real_t t534 = RX90_C(0.1) * (t521 + (t520 + (t15 * t315 - t16 * t314)));
     input_by_q[28] = t534;
+    /* link j6: derivatives */
     const rx90_real_t t535 = t15 * t330 - t16 * t329 + (t515 - t347 * t57 + t354 * t512);
     input_by_q[34] = RX90_C(0.16666666666666666) * (t535 + t517);
-    const rx90_real_t t536 = RX90_C(2.0) * t209 + (t346 * t510 + t348 * t511);
+    const rx90_real_t t536 = RX90_C(2.0) * t209 + (t346 * t510 + t348 * t511); /* link j5: derivatives */
     const rx90_real_t t537 = RX90_C(2.0) * t210 + (t348 * t510 + parameters[ZZ6] * t511);
     const rx90_real_t t538 = t10 * t536 - t14 * t537;
     const rx90_real_t t539 = t317 + (t355 * t511 - t353 * t510);
@@ -798,8 +884,8 @@ int rx90_inverse_dynamics_derivatives(
     input_by_ddq[22] = t509;
     input_by_ddq[28] = RX90_C(250.0) * parameters[IA5] + RX90_C(-0.1) * t352;
     input_by_ddq[34] = RX90_C(-0.16666666666666666) * t354;
-    const rx90_real_t t553 = t94 + t64;
-    const rx90_real_t t554 = RX90_C(2.0) * t49;
+    const rx90_real_t t553 = t94 + t64; /* link j6: force and moment */
+    const rx90_real_t t554 = RX90_C(2.0) * t49; /* link j6: derivatives */
     const rx90_real_t t555 = RX90_C(2.0) * t54;
     const rx90_real_t t556 = t175 * t554 + t181 * t555 - (parameters[XZ6] * t553 - (parameters[XX6R] * t53
         + parameters[XY6] * t48));

@@ -7,16 +7,16 @@
  * Arm rx90, description 10f0505273a073e2.
  * SPDX-License-Identifier: 0BSD
  *
- * Operations: 2428 (1356 mul, 1072 add, 0 neg), 10 trig, 6 other.
+ * Operations: 2428 (1356 mul, 1072 add, 0 neg), 10 trig, 6 other calls (sign, select and the like).
  *
- * @param[in]   q             [6]   [rad]                joint coordinates; norm at most 10000
- * @param[in]   dq            [6]   [rad/s]              joint velocities; norm at most 100000
- * @param[in]   ddq           [6]   [rad/s^2]            joint accelerations; norm at most 1e+08
- * @param[in]   parameters    [78]                       standard parameters; norm at most 1e+09
- * @param[out]  input         [6]   [A]                  inputs: motor currents, efforts where undriven
- * @param[out]  input_by_q    [36]  [(A) per (rad)]      d input / d q; 6 x 6, row-major
- * @param[out]  input_by_dq   [36]  [(A) per (rad/s)]    d input / d dq; 6 x 6, row-major
- * @param[out]  input_by_ddq  [36]  [(A) per (rad/s^2)]  d input / d ddq; 6 x 6, row-major
+ * @param[in]   q             [6]   [rad]              joint coordinates; norm at most 10000
+ * @param[in]   dq            [6]   [rad/s]            joint velocities; norm at most 100000
+ * @param[in]   ddq           [6]   [rad/s^2]          joint accelerations; norm at most 1e+08
+ * @param[in]   parameters    [78]                     standard parameters; norm at most 1e+09
+ * @param[out]  input         [6]   [A]                inputs: motor currents, efforts where undriven
+ * @param[out]  input_by_q    [36]  [A per rad]        d input / d q; 6 x 6, row-major
+ * @param[out]  input_by_dq   [36]  [A per (rad/s)]    d input / d dq; 6 x 6, row-major
+ * @param[out]  input_by_ddq  [36]  [A per (rad/s^2)]  d input / d ddq; 6 x 6, row-major
  *
  * Coordinates:
  *
@@ -110,11 +110,11 @@
  */
 #include "rx90_private.h"
 
-#if RX90_GENERATION != 0xD1F0D18FUL
+#if RX90_GENERATION != 0x88006983UL
 #error "rx90.h and rx90_inverse_dynamics_derivatives_standard.c are of different generations: generate the arm again"
 #endif
 
-int rx90_inverse_dynamics_derivatives_standard(
+rx90_status_t rx90_inverse_dynamics_derivatives_standard(
     const rx90_real_t q[RX90_N_JOINTS],
     const rx90_real_t dq[RX90_N_JOINTS],
     const rx90_real_t ddq[RX90_N_JOINTS],
@@ -128,7 +128,7 @@ int rx90_inverse_dynamics_derivatives_standard(
         M2, XX3, XY3, XZ3, YY3, YZ3, ZZ3, MX3, MY3, MZ3, M3, XX4, XY4, XZ4, YY4, YZ4, ZZ4, MX4, MY4, MZ4, M4,
         XX5, XY5, XZ5, YY5, YZ5, ZZ5, MX5, MY5, MZ5, M5, XX6, XY6, XZ6, YY6, YZ6, ZZ6, MX6, MY6, MZ6, M6, FV1,
         FC1, IA1, FV2, FC2, IA2, FV3, FC3, IA3, FV4, FC4, IA4, FV5, FC5, IA5, FV6, FC6, IA6 };
-    int status = RX90_STATUS_OK;
+    rx90_status_t status = RX90_STATUS_OK;
 
     if (!rx90_within_joints(q, RX90_C(1.0e8))
         || !rx90_within_joints(dq, RX90_C(1.0e10))
@@ -154,44 +154,44 @@ int rx90_inverse_dynamics_derivatives_standard(
     RX90_SINCOS(q[4], &t25, &t24);
     rx90_real_t t30, t47;
     RX90_SINCOS(q[5], &t30, &t47);
-    const rx90_real_t t4 = t0 * t1 + t2 * t3;
+    const rx90_real_t t4 = t0 * t1 + t2 * t3; /* link j3: motion */
     const rx90_real_t t5 = dq[0] * t4;
     const rx90_real_t t6 = t2 * t1 - t0 * t3;
     const rx90_real_t t7 = dq[0] * t6;
     const rx90_real_t t8 = t5 * t7;
     const rx90_real_t t9 = ddq[1] + ddq[2];
-    const rx90_real_t t10 = t8 - t9;
-    const rx90_real_t t12 = ddq[0] * t4;
+    const rx90_real_t t10 = t8 - t9; /* link j4: motion */
+    const rx90_real_t t12 = ddq[0] * t4; /* link j3: motion */
     const rx90_real_t t13 = dq[1] + dq[2];
     const rx90_real_t t14 = t7 * t13;
     const rx90_real_t t15 = t12 + t14;
-    const rx90_real_t t16 = t14 + t15;
+    const rx90_real_t t16 = t14 + t15; /* link j4: motion */
     const rx90_real_t t18 = t11 * t10 - t17 * t16;
     const rx90_real_t t19 = t17 * t13 - t11 * t5;
     const rx90_real_t t20 = dq[3] + t7;
     const rx90_real_t t21 = t19 * t20;
     const rx90_real_t t22 = t18 + t21;
-    const rx90_real_t t23 = t22 - ddq[4];
+    const rx90_real_t t23 = t22 - ddq[4]; /* link j5: motion */
     const rx90_real_t t26 = t24 * t19 - t25 * t20;
     const rx90_real_t t27 = t25 * t19 + t24 * t20;
     const rx90_real_t t28 = t26 * t27;
-    const rx90_real_t t29 = t28 - t23;
-    const rx90_real_t t31 = ddq[0] * t6;
+    const rx90_real_t t29 = t28 - t23; /* link j6: motion */
+    const rx90_real_t t31 = ddq[0] * t6; /* link j3: motion */
     const rx90_real_t t32 = t5 * t13;
     const rx90_real_t t33 = t32 - t31;
-    const rx90_real_t t34 = t33 - ddq[3];
+    const rx90_real_t t34 = t33 - ddq[3]; /* link j4: motion */
     const rx90_real_t t35 = t17 * t5 + t11 * t13;
     const rx90_real_t t36 = t19 * t35;
-    const rx90_real_t t37 = t34 + t36;
-    const rx90_real_t t38 = t17 * t10 + t11 * t16;
+    const rx90_real_t t37 = t34 + t36; /* link j5: motion */
+    const rx90_real_t t38 = t17 * t10 + t11 * t16; /* link j4: motion */
     const rx90_real_t t39 = t35 * t20;
     const rx90_real_t t40 = t39 - t38;
-    const rx90_real_t t41 = t39 + t40;
+    const rx90_real_t t41 = t39 + t40; /* link j5: motion */
     const rx90_real_t t42 = t25 * t37 + t24 * t41;
     const rx90_real_t t43 = dq[4] + t35;
     const rx90_real_t t44 = t27 * t43;
     const rx90_real_t t45 = t44 - t42;
-    const rx90_real_t t46 = t44 + t45;
+    const rx90_real_t t46 = t44 + t45; /* link j6: motion */
     const rx90_real_t t48 = t30 * t29 - t47 * t46;
     const rx90_real_t t49 = t30 * t26 - t47 * t43;
     const rx90_real_t t50 = dq[5] + t27;
@@ -201,196 +201,234 @@ int rx90_inverse_dynamics_derivatives_standard(
     const rx90_real_t t54 = t47 * t26 + t30 * t43;
     const rx90_real_t t55 = t54 * t50;
     const rx90_real_t t56 = t53 - t55;
-    const rx90_real_t t57 = t56 - t55;
+    const rx90_real_t t57 = t56 - t55; /* link j6: columns */
+    /* link j6: force and moment */
     const rx90_real_t t58 = t52 * parameters[XX6] - t51 * (parameters[ZZ6] - parameters[YY6])
         + t57 * parameters[XY6];
-    const rx90_real_t t59 = t25 * t41 - t24 * t37;
+    const rx90_real_t t59 = t25 * t41 - t24 * t37; /* link j5: motion */
     const rx90_real_t t60 = t26 * t43;
     const rx90_real_t t61 = t59 + t60;
-    const rx90_real_t t62 = ddq[5] + t61;
+    const rx90_real_t t62 = ddq[5] + t61; /* link j6: motion */
     const rx90_real_t t63 = t54 * t49;
-    const rx90_real_t t64 = t63 - t62;
-    const rx90_real_t t65 = t49 * t49;
+    const rx90_real_t t64 = t63 - t62; /* link j6: columns */
+    const rx90_real_t t65 = t49 * t49; /* link j6: motion */
     const rx90_real_t t66 = t50 * t50;
-    const rx90_real_t t67 = t2 * dq[0];
+    const rx90_real_t t67 = t2 * dq[0]; /* link j2: motion */
     const rx90_real_t t68 = t67 * t67;
     const rx90_real_t t69 = dq[1] * dq[1];
     const rx90_real_t t70 = RX90_C(9.81) * t0;
-    const rx90_real_t t71 = t70 + RX90_C(-0.45) * (t68 + t69);
-    const rx90_real_t t72 = t0 * dq[0];
+    const rx90_real_t t71 = t70 + RX90_C(-0.45) * (t68 + t69); /* link j3: motion */
+    const rx90_real_t t72 = t0 * dq[0]; /* link j2: motion */
     const rx90_real_t t73 = t72 * t67;
-    const rx90_real_t t74 = ddq[1] + t73;
-    const rx90_real_t t75 = RX90_C(-9.81) * t2;
-    const rx90_real_t t76 = RX90_C(0.45) * t74 - t75;
+    const rx90_real_t t74 = ddq[1] + t73; /* link j3: motion */
+    const rx90_real_t t75 = RX90_C(-9.81) * t2; /* link j2: motion */
+    const rx90_real_t t76 = RX90_C(0.45) * t74 - t75; /* link j3: motion */
     const rx90_real_t t77 = t1 * t71 + t3 * t76;
-    const rx90_real_t t78 = t77 + RX90_C(0.45) * t10;
-    const rx90_real_t t79 = t2 * ddq[0];
+    const rx90_real_t t78 = t77 + RX90_C(0.45) * t10; /* link j4: motion */
+    const rx90_real_t t79 = t2 * ddq[0]; /* link j2: motion */
     const rx90_real_t t80 = dq[1] * t72;
     const rx90_real_t t81 = t80 - t79;
-    const rx90_real_t t82 = t80 + t81;
+    const rx90_real_t t82 = t80 + t81; /* link j3: motion */
     const rx90_real_t t83 = RX90_C(0.45) * t82;
-    const rx90_real_t t84 = t83 + RX90_C(0.45) * t16;
+    const rx90_real_t t84 = t83 + RX90_C(0.45) * t16; /* link j4: motion */
     const rx90_real_t t85 = t11 * t78 - t17 * t84;
-    const rx90_real_t t86 = t3 * t71 - t1 * t76;
+    const rx90_real_t t86 = t3 * t71 - t1 * t76; /* link j3: motion */
     const rx90_real_t t87 = t5 * t5;
     const rx90_real_t t88 = t13 * t13;
-    const rx90_real_t t89 = t87 + t88;
+    const rx90_real_t t89 = t87 + t88; /* link j4: motion */
     const rx90_real_t t90 = t86 + RX90_C(0.45) * t89;
-    const rx90_real_t t91 = t25 * t85 + t24 * t90;
+    const rx90_real_t t91 = t25 * t85 + t24 * t90; /* link j5: motion */
     const rx90_real_t t92 = t25 * t90 - t24 * t85;
-    const rx90_real_t t93 = t17 * t78 + t11 * t84;
-    const rx90_real_t t94 = t47 * t93 - t30 * t92;
-    const rx90_real_t t95 = t94 * parameters[MZ6];
+    const rx90_real_t t93 = t17 * t78 + t11 * t84; /* link j4: motion */
+    const rx90_real_t t94 = t47 * t93 - t30 * t92; /* link j6: motion */
+    const rx90_real_t t95 = t94 * parameters[MZ6]; /* link j6: force and moment */
     const rx90_real_t t96 = (t66 - t65) * parameters[YZ6] + (t58 + t64 * parameters[XZ6])
         + (t91 * parameters[MY6] - t95);
-    const rx90_real_t t97 = t52 - t51;
+    const rx90_real_t t97 = t52 - t51; /* link j6: columns */
+    /* link j6: force and moment */
     const rx90_real_t t98 = t56 * parameters[YY6] - t55 * (parameters[ZZ6] - parameters[XX6])
         + t97 * parameters[XY6];
-    const rx90_real_t t99 = t62 + t63;
-    const rx90_real_t t100 = t54 * t54;
+    const rx90_real_t t99 = t62 + t63; /* link j6: columns */
+    const rx90_real_t t100 = t54 * t54; /* link j6: motion */
     const rx90_real_t t101 = t47 * t92 + t30 * t93;
-    const rx90_real_t t102 = t101 * parameters[MZ6];
+    const rx90_real_t t102 = t101 * parameters[MZ6]; /* link j6: force and moment */
     const rx90_real_t t103 = (t100 - t66) * parameters[XZ6] + (t98 - t99 * parameters[YZ6]) + (t102
         - t91 * parameters[MX6]);
-    const rx90_real_t t104 = t60 + t61;
+    const rx90_real_t t104 = t60 + t61; /* link j6: motion */
+    /* link j5: force and moment */
     const rx90_real_t t105 = t45 * parameters[XX5] - t44 * (parameters[YY5] - parameters[ZZ5])
         + t104 * parameters[XY5];
-    const rx90_real_t t106 = t23 + t28;
-    const rx90_real_t t107 = t27 * t27;
+    const rx90_real_t t106 = t23 + t28; /* link j6: motion */
+    const rx90_real_t t107 = t27 * t27; /* link j5: motion */
     const rx90_real_t t108 = t43 * t43;
+    /* link j5: force and moment */
     const rx90_real_t t109 = (t107 - t108) * parameters[YZ5] + (t105 - t106 * parameters[XZ5])
         + (t93 * parameters[MY5] + t91 * parameters[MZ5]);
-    const rx90_real_t t110 = t109 + (t30 * t103 - t47 * t96);
-    const rx90_real_t t111 = parameters[XX6] - parameters[YY6];
+    const rx90_real_t t110 = t109 + (t30 * t103 - t47 * t96); /* link j6: what it passes on */
+    const rx90_real_t t111 = parameters[XX6] - parameters[YY6]; /* link j6: inertia of it and all beyond */
+    /* link j6: force and moment */
     const rx90_real_t t112 = t53 * parameters[YZ6] - (t63 * t111 + t62 * parameters[ZZ6])
         + t48 * parameters[XZ6];
     const rx90_real_t t113 = (t65 - t100) * parameters[XY6] + t112 + (t94 * parameters[MX6]
         - t101 * parameters[MY6]);
+    /* link j5: force and moment */
     const rx90_real_t t114 = t60 * (parameters[ZZ5] - parameters[XX5]) + t61 * parameters[YY5]
         + t46 * parameters[XY5];
-    const rx90_real_t t115 = t26 * t26;
+    const rx90_real_t t115 = t26 * t26; /* link j5: motion */
+    /* link j5: force and moment */
     const rx90_real_t t116 = (t115 - t108) * parameters[XZ5] - (t114 + t29 * parameters[YZ5])
         + (t92 * parameters[MZ5] + t93 * parameters[MX5]);
-    const rx90_real_t t117 = t116 + t113;
-    const rx90_real_t t118 = t21 + t22;
+    const rx90_real_t t117 = t116 + t113; /* link j6: what it passes on */
+    const rx90_real_t t118 = t21 + t22; /* link j5: motion */
+    /* link j4: force and moment */
     const rx90_real_t t119 = t39 * (parameters[ZZ4] - parameters[YY4]) + t40 * parameters[XX4]
         - t118 * parameters[XY4];
-    const rx90_real_t t120 = t34 - t36;
-    const rx90_real_t t121 = t35 * t35;
+    const rx90_real_t t120 = t34 - t36; /* link j5: motion */
+    const rx90_real_t t121 = t35 * t35; /* link j4: motion */
     const rx90_real_t t122 = t20 * t20;
+    /* link j4: force and moment */
     const rx90_real_t t123 = (t122 - t121) * parameters[YZ4] + (t119 + t120 * parameters[XZ4])
         + (t90 * parameters[MY4] - t93 * parameters[MZ4]);
-    const rx90_real_t t124 = t123 - (t24 * t110 + t25 * t117);
+    const rx90_real_t t124 = t123 - (t24 * t110 + t25 * t117); /* link j5: what it passes on */
+    /* link j5: force and moment */
     const rx90_real_t t125 = t28 * (parameters[XX5] - parameters[YY5]) - t23 * parameters[ZZ5]
         + t59 * parameters[YZ5];
     const rx90_real_t t126 = (t115 - t107) * parameters[XY5] + (t125 - t42 * parameters[XZ5])
         + (t92 * parameters[MY5] - t91 * parameters[MX5]);
-    const rx90_real_t t127 = t126 + (t30 * t96 + t47 * t103);
+    const rx90_real_t t127 = t126 + (t30 * t96 + t47 * t103); /* link j6: what it passes on */
+    /* link j4: force and moment */
     const rx90_real_t t128 = t41 * parameters[XY4] - (t21 * (parameters[ZZ4] - parameters[XX4])
         + t22 * parameters[YY4]);
-    const rx90_real_t t129 = t19 * t19;
+    const rx90_real_t t129 = t19 * t19; /* link j4: motion */
+    /* link j4: force and moment */
     const rx90_real_t t130 = (t129 - t122) * parameters[XZ4] + (t128 + t37 * parameters[YZ4])
         - (t85 * parameters[MZ4] + t90 * parameters[MX4]);
-    const rx90_real_t t131 = t130 + t127;
-    const rx90_real_t t132 = t53 * parameters[MZ6];
+    const rx90_real_t t131 = t130 + t127; /* link j5: what it passes on */
+    const rx90_real_t t132 = t53 * parameters[MZ6]; /* link j6: force and moment */
     const rx90_real_t t133 = t101 * parameters[M6];
     const rx90_real_t t134 = t133 + ((t65 + t66) * parameters[MX6] + t99 * parameters[MY6] + t132);
     const rx90_real_t t135 = t48 * parameters[MZ6];
     const rx90_real_t t136 = t94 * parameters[M6];
     const rx90_real_t t137 = t136 + ((t100 + t66) * parameters[MY6] + t64 * parameters[MX6] - t135);
+    /* link j5: force and moment */
     const rx90_real_t t138 = t59 * parameters[MZ5] - ((t107 + t108) * parameters[MX5]
         + t29 * parameters[MY5]);
+    /* link j6: what it passes on */
     const rx90_real_t t139 = t138 - t92 * parameters[M5] + (t30 * t137 - t47 * t134);
-    const rx90_real_t t140 = t100 + t65;
+    const rx90_real_t t140 = t100 + t65; /* link j6: columns */
+    /* link j6: force and moment */
     const rx90_real_t t141 = t91 * parameters[M6] + (t140 * parameters[MZ6] + (t97 * parameters[MY6]
         - t57 * parameters[MX6]));
+    /* link j5: force and moment */
     const rx90_real_t t142 = (t115 + t108) * parameters[MY5] + t106 * parameters[MX5] - t42 * parameters[MZ5];
-    const rx90_real_t t143 = t91 * parameters[M5] + t142 + t141;
+    const rx90_real_t t143 = t91 * parameters[M5] + t142 + t141; /* link j6: what it passes on */
+    /* link j4: force and moment */
     const rx90_real_t t144 = (t121 + t122) * parameters[MX4] - t37 * parameters[MY4] - t18 * parameters[MZ4];
+    /* link j5: what it passes on */
     const rx90_real_t t145 = t85 * parameters[M4] - t144 + (t24 * t139 + t25 * t143);
-    const rx90_real_t t146 = t115 + t107;
+    const rx90_real_t t146 = t115 + t107; /* link j6: motion */
+    /* link j5: force and moment */
     const rx90_real_t t147 = t93 * parameters[M5] + (t46 * parameters[MY5] - t104 * parameters[MX5]
         - t146 * parameters[MZ5]);
+    /* link j4: force and moment */
     const rx90_real_t t148 = (t129 + t122) * parameters[MY4] + t120 * parameters[MX4] + t38 * parameters[MZ4];
+    /* link j5: what it passes on */
     const rx90_real_t t149 = t93 * parameters[M4] + t148 + (t147 + (t30 * t134 + t47 * t137));
-    const rx90_real_t t150 = t11 * t149 - t17 * t145;
-    const rx90_real_t t151 = t32 + t33;
+    const rx90_real_t t150 = t11 * t149 - t17 * t145; /* link j4: what it passes on */
+    const rx90_real_t t151 = t32 + t33; /* link j4: motion */
+    /* link j3: force and moment */
     const rx90_real_t t152 = t15 * parameters[XX3] - t14 * (parameters[YY3] - parameters[ZZ3])
         - t151 * parameters[XY3];
-    const rx90_real_t t153 = t9 + t8;
-    const rx90_real_t t154 = t7 * t7;
+    const rx90_real_t t153 = t9 + t8; /* link j4: motion */
+    const rx90_real_t t154 = t7 * t7; /* link j3: motion */
+    /* link j3: force and moment */
     const rx90_real_t t155 = t83 * parameters[MY3] + t86 * parameters[MZ3] + ((t154 - t88) * parameters[YZ3]
         + (t152 + t153 * parameters[XZ3]));
+    /* link j4: what it passes on */
     const rx90_real_t t156 = t155 + (t17 * t131 - t11 * t124 - RX90_C(-0.45) * t150);
+    /* link j4: force and moment */
     const rx90_real_t t157 = t34 * parameters[ZZ4] - t36 * (parameters[YY4] - parameters[XX4])
         - t18 * parameters[YZ4];
     const rx90_real_t t158 = (t121 - t129) * parameters[XY4] + (t157 - t38 * parameters[XZ4])
         + (t93 * parameters[MX4] + t85 * parameters[MY4]);
-    const rx90_real_t t159 = t158 + (t24 * t117 - t25 * t110);
+    const rx90_real_t t159 = t158 + (t24 * t117 - t25 * t110); /* link j5: what it passes on */
+    /* link j3: force and moment */
     const rx90_real_t t160 = t32 * (parameters[ZZ3] - parameters[XX3]) + t33 * parameters[YY3]
         - t16 * parameters[XY3];
     const rx90_real_t t161 = t83 * parameters[MX3] - t77 * parameters[MZ3] + ((t87 - t88) * parameters[XZ3]
         + (t160 + t10 * parameters[YZ3]));
-    const rx90_real_t t162 = t161 + t159;
-    const rx90_real_t t163 = dq[1] * t67;
+    const rx90_real_t t162 = t161 + t159; /* link j4: what it passes on */
+    const rx90_real_t t163 = dq[1] * t67; /* link j2: motion */
     const rx90_real_t t164 = t0 * ddq[0];
     const rx90_real_t t165 = t164 + t163;
+    /* link j2: force and moment */
     const rx90_real_t t166 = t163 * (parameters[ZZ2] - parameters[YY2]) + t165 * parameters[XX2]
         - t82 * parameters[XY2];
     const rx90_real_t t167 = t75 * parameters[MZ2] + ((t68 - t69) * parameters[YZ2] + (t166
         + t74 * parameters[XZ2]));
-    const rx90_real_t t168 = t167 + (t1 * t156 + t3 * t162);
-    const rx90_real_t t169 = t87 + t154;
+    const rx90_real_t t168 = t167 + (t1 * t156 + t3 * t162); /* link j3: what it passes on */
+    const rx90_real_t t169 = t87 + t154; /* link j4: motion */
+    /* link j3: force and moment */
     const rx90_real_t t170 = t83 * parameters[M3] + (t151 * parameters[MX3] + t16 * parameters[MY3]
         - t169 * parameters[MZ3]);
+    /* link j3: what it passes on */
     const rx90_real_t t171 = t1 * t162 - t3 * t156 + RX90_C(0.45) * (t170 + t150);
+    /* link j2: force and moment */
     const rx90_real_t t172 = t80 * (parameters[ZZ2] - parameters[XX2]) + t81 * parameters[YY2] - (t163
         + t165) * parameters[XY2];
-    const rx90_real_t t173 = t72 * t72;
+    const rx90_real_t t173 = t72 * t72; /* link j2: motion */
+    /* link j2: force and moment */
     const rx90_real_t t174 = (t173 - t69) * parameters[XZ2] + (t172 + (t73 - ddq[1]) * parameters[YZ2]);
-    const rx90_real_t t175 = t174 - t70 * parameters[MZ2] + t171;
+    const rx90_real_t t175 = t174 - t70 * parameters[MZ2] + t171; /* link j3: what it passes on */
     const rx90_real_t t176 = RX90_C(0.03333333333333333) * (ddq[0] * parameters[ZZ1] + (t0 * t168
         - t2 * t175));
-    const rx90_real_t t177 = rx90_sign(dq[0]);
+    const rx90_real_t t177 = rx90_sign(dq[0]); /* joint j1: coulomb_friction */
     const rx90_real_t t178 = RX90_C(1.0e2) * dq[0] * parameters[FV1] + t177 * parameters[FC1]
         + RX90_C(1.0e2) * ddq[0] * parameters[IA1];
     input[0] = RX90_C(3.3333333333333335) * t178 + t176;
-    const rx90_real_t t179 = t11 * t145 + t17 * t149;
+    const rx90_real_t t179 = t11 * t145 + t17 * t149; /* link j4: what it passes on */
+    /* link j3: force and moment */
     const rx90_real_t t180 = t9 * parameters[ZZ3] - t8 * (parameters[XX3] - parameters[YY3])
         + t31 * parameters[YZ3];
     const rx90_real_t t181 = (t87 - t154) * parameters[XY3] + (t180 + t12 * parameters[XZ3])
         - (t86 * parameters[MX3] + t77 * parameters[MY3]);
+    /* link j4: what it passes on */
     const rx90_real_t t182 = t181 + (t17 * t124 + t11 * t131 + RX90_C(-0.45) * t179);
+    /* link j3: force and moment */
     const rx90_real_t t183 = t10 * parameters[MY3] - (t154 + t88) * parameters[MX3] + t31 * parameters[MZ3];
-    const rx90_real_t t184 = t77 * parameters[M3] + t183 + t179;
-    const rx90_real_t t185 = t129 + t121;
+    const rx90_real_t t184 = t77 * parameters[M3] + t183 + t179; /* link j4: what it passes on */
+    const rx90_real_t t185 = t129 + t121; /* link j5: motion */
+    /* link j4: force and moment */
     const rx90_real_t t186 = t90 * parameters[M4] + (t185 * parameters[MZ4] + (t118 * parameters[MX4]
         + t41 * parameters[MY4]));
+    /* link j3: force and moment */
     const rx90_real_t t187 = t86 * parameters[M3] + (t89 * parameters[MY3] - t153 * parameters[MX3]
         + t12 * parameters[MZ3]);
-    const rx90_real_t t188 = t187 + (t186 + (t24 * t143 - t25 * t139));
+    const rx90_real_t t188 = t187 + (t186 + (t24 * t143 - t25 * t139)); /* link j4: what it passes on */
+    /* link j2: force and moment */
     const rx90_real_t t189 = t73 * (parameters[YY2] - parameters[XX2]) + ddq[1] * parameters[ZZ2]
         + t79 * parameters[YZ2];
     const rx90_real_t t190 = (t173 - t68) * parameters[XY2] + (t189 + t164 * parameters[XZ2])
         - (t75 * parameters[MX2] + t70 * parameters[MY2]);
+    /* link j3: what it passes on */
     const rx90_real_t t191 = t190 + (t182 + RX90_C(0.45) * (t3 * t184 - t1 * t188));
-    const rx90_real_t t192 = rx90_sign(dq[1]);
+    const rx90_real_t t192 = rx90_sign(dq[1]); /* joint j2: coulomb_friction */
     const rx90_real_t t193 = RX90_C(1.0e2) * dq[1] * parameters[FV2] + t192 * parameters[FC2]
         + RX90_C(1.0e2) * ddq[1] * parameters[IA2];
     input[1] = RX90_C(3.3333333333333335) * t193 + RX90_C(0.03333333333333333) * t191;
-    const rx90_real_t t194 = rx90_sign(dq[2]);
+    const rx90_real_t t194 = rx90_sign(dq[2]); /* joint j3: coulomb_friction */
     const rx90_real_t t195 = RX90_C(1.0e2) * dq[2] * parameters[FV3] + t194 * parameters[FC3]
         + RX90_C(1.0e2) * ddq[2] * parameters[IA3];
     input[2] = RX90_C(3.3333333333333335) * t195 + RX90_C(0.03333333333333333) * t182;
-    const rx90_real_t t196 = rx90_sign(dq[3]);
+    const rx90_real_t t196 = rx90_sign(dq[3]); /* joint j4: coulomb_friction */
     const rx90_real_t t197 = RX90_C(50.0) * dq[3] * parameters[FV4] + t196 * parameters[FC4]
         + RX90_C(50.0) * ddq[3] * parameters[IA4];
     input[3] = RX90_C(5.0) * t197 + RX90_C(-0.1) * t159;
-    const rx90_real_t t198 = rx90_sign(dq[4]);
+    const rx90_real_t t198 = rx90_sign(dq[4]); /* joint j5: coulomb_friction */
     const rx90_real_t t199 = RX90_C(50.0) * dq[4] * parameters[FV5] + t198 * parameters[FC5]
         + RX90_C(50.0) * ddq[4] * parameters[IA5];
     input[4] = RX90_C(5.0) * t199 + RX90_C(0.1) * t127;
-    const rx90_real_t t200 = rx90_sign(dq[5]);
+    const rx90_real_t t200 = rx90_sign(dq[5]); /* joint j6: coulomb_friction */
     const rx90_real_t t201 = RX90_C(30.0) * dq[5] * parameters[FV6] + t200 * parameters[FC6]
         + RX90_C(30.0) * ddq[5] * parameters[IA6];
     input[5] = RX90_C(5.0) * t201 + RX90_C(-0.16666666666666666) * t113;
@@ -404,6 +442,7 @@ int rx90_inverse_dynamics_derivatives_standard(
     const rx90_real_t t209 = t50 * t208 + t54 * parameters[XZ6];
     const rx90_real_t t210 = t207 - parameters[YY6];
     const rx90_real_t t211 = t49 * parameters[YZ6] + t50 * t210;
+    /* link j6: inertia, momentum beyond */
     const rx90_real_t t212 = t47 * (t204 + t206) + t30 * (t209 + t211);
     const rx90_real_t t213 = t47 * t212;
     const rx90_real_t t214 = t27 * parameters[XZ5];
@@ -422,90 +461,105 @@ int rx90_inverse_dynamics_derivatives_standard(
     const rx90_real_t t227 = t49 * parameters[XY6] - t54 * t210;
     const rx90_real_t t228 = t223 - parameters[XX5];
     const rx90_real_t t229 = t43 * t228 - t26 * parameters[XZ5] + (t47 * t226 - t30 * t227);
+    /* link j5: inertia, momentum beyond */
     const rx90_real_t t230 = t24 * (t216 + t219) + t25 * (t225 - t229);
     const rx90_real_t t231 = t24 * t230;
     const rx90_real_t t232 = t35 * parameters[XZ4];
     const rx90_real_t t233 = t20 * parameters[XY4];
     const rx90_real_t t234 = t232 + t233 - (t219 - t231);
-    const rx90_real_t t235 = t213 - t204 - (t214 + t218);
+    const rx90_real_t t235 = t213 - t204 - (t214 + t218); /* link j6: inertia, momentum beyond */
     const rx90_real_t t236 = t19 * parameters[YZ4];
-    const rx90_real_t t237 = t233 + t236 + t235;
-    const rx90_real_t t238 = t30 * t212;
+    const rx90_real_t t237 = t233 + t236 + t235; /* link j5: inertia, momentum beyond */
+    const rx90_real_t t238 = t30 * t212; /* link j6: inertia, momentum beyond */
     const rx90_real_t t239 = t223 - parameters[ZZ5];
     const rx90_real_t t240 = t238 - t211 - (t27 * t239 + t43 * parameters[YZ5]);
     const rx90_real_t t241 = t43 * parameters[XZ5] - t26 * t239 + (t30 * t226 + t47 * t227);
     const rx90_real_t t242 = RX90_C(0.5) * (parameters[ZZ4] + (parameters[XX4] + parameters[YY4]));
     const rx90_real_t t243 = t242 - parameters[YY4];
+    /* link j5: inertia, momentum beyond */
     const rx90_real_t t244 = t35 * parameters[YZ4] - t20 * t243 - (t25 * t241 - t24 * t240);
+    /* link j6: inertia, momentum beyond */
     const rx90_real_t t245 = t26 * parameters[XY5] - t27 * t228 + (t209 - t238);
     const rx90_real_t t246 = t27 * parameters[XY5] - t26 * t224 + (t30 * t221 + t47 * t222);
     const rx90_real_t t247 = parameters[XX4] - t242;
+    /* link j5: inertia, momentum beyond */
     const rx90_real_t t248 = t20 * t247 + t19 * parameters[XZ4] + (t24 * t245 - t25 * t246);
+    /* link j4: inertia, momentum beyond */
     const rx90_real_t t249 = t11 * (t234 + t237) + t17 * (t248 - t244);
     const rx90_real_t t250 = t11 * t249;
+    /* link j6: column of the mass matrix */
     const rx90_real_t t251 = t47 * parameters[MY6] + t30 * parameters[MX6];
-    const rx90_real_t t252 = parameters[MZ5] - t251;
-    const rx90_real_t t253 = t252 - parameters[MY4];
+    const rx90_real_t t252 = parameters[MZ5] - t251; /* link j6: inertia of it and all beyond */
+    const rx90_real_t t253 = t252 - parameters[MY4]; /* link j5: inertia of it and all beyond */
+    /* link j6: column of the mass matrix */
     const rx90_real_t t254 = t30 * parameters[MY6] - t47 * parameters[MX6];
-    const rx90_real_t t255 = t254 - parameters[MX5];
+    const rx90_real_t t255 = t254 - parameters[MX5]; /* link j6: inertia of it and all beyond */
     const rx90_real_t t256 = parameters[MY5] + parameters[MZ6];
-    const rx90_real_t t257 = t25 * t256 + t24 * t255;
-    const rx90_real_t t258 = t257 - parameters[MX4];
-    const rx90_real_t t259 = t11 * t258 - t17 * t253;
-    const rx90_real_t t260 = RX90_C(-0.45) * t13;
-    const rx90_real_t t261 = t259 * t260;
+    const rx90_real_t t257 = t25 * t256 + t24 * t255; /* link j5: column of the mass matrix */
+    const rx90_real_t t258 = t257 - parameters[MX4]; /* link j5: inertia of it and all beyond */
+    const rx90_real_t t259 = t11 * t258 - t17 * t253; /* link j4: column of the mass matrix */
+    const rx90_real_t t260 = RX90_C(-0.45) * t13; /* link j4: velocity of its origin */
+    const rx90_real_t t261 = t259 * t260; /* link j4: inertia, momentum beyond */
     const rx90_real_t t262 = t49 * parameters[MZ6] - t50 * parameters[MY6];
     const rx90_real_t t263 = t50 * parameters[MX6] + t54 * parameters[MZ6];
+    /* link j6: inertia, momentum beyond */
     const rx90_real_t t264 = t27 * parameters[MZ5] - t43 * parameters[MY5] + (t47 * t262 - t30 * t263);
     const rx90_real_t t265 = t54 * parameters[MY6] + t49 * parameters[MX6];
     const rx90_real_t t266 = t265 - (t43 * parameters[MX5] + t26 * parameters[MZ5]);
+    /* link j5: inertia, momentum beyond */
     const rx90_real_t t267 = t19 * parameters[MY4] - t35 * parameters[MX4] + (t24 * t266 - t25 * t264);
-    const rx90_real_t t268 = RX90_C(-0.45) * t267;
-    const rx90_real_t t269 = t11 * t253 + t17 * t258;
+    const rx90_real_t t268 = RX90_C(-0.45) * t267; /* link j4: inertia, momentum beyond */
+    const rx90_real_t t269 = t11 * t253 + t17 * t258; /* link j4: column of the mass matrix */
     const rx90_real_t t270 = RX90_C(0.45) * t5;
-    const rx90_real_t t271 = t269 * t270;
+    const rx90_real_t t271 = t269 * t270; /* link j4: inertia, momentum beyond */
     const rx90_real_t t272 = t268 + (t271 - t261);
     const rx90_real_t t273 = t7 * parameters[XZ3];
     const rx90_real_t t274 = t13 * parameters[XY3];
     const rx90_real_t t275 = t273 - t274 + (t272 + (t237 - t250 + t261));
-    const rx90_real_t t276 = t232 - t236 - (t216 - t231);
+    const rx90_real_t t276 = t232 - t236 - (t216 - t231); /* link j5: inertia, momentum beyond */
     const rx90_real_t t277 = t5 * parameters[YZ3];
-    const rx90_real_t t278 = t274 - t277 + (t272 + (t276 - t268));
-    const rx90_real_t t279 = t25 * t230;
+    const rx90_real_t t278 = t274 - t277 + (t272 + (t276 - t268)); /* link j4: inertia, momentum beyond */
+    const rx90_real_t t279 = t25 * t230; /* link j5: inertia, momentum beyond */
     const rx90_real_t t280 = t242 - parameters[ZZ4];
     const rx90_real_t t281 = t20 * parameters[YZ4] - t35 * t280 + (t279 - t225);
     const rx90_real_t t282 = t20 * parameters[XZ4] - t19 * t280 + (t25 * t245 + t24 * t246);
     const rx90_real_t t283 = t24 * t264 + t25 * t266 - (t35 * parameters[MZ4] + t20 * parameters[MY4]);
+    /* link j6: inertia, momentum beyond */
     const rx90_real_t t284 = t26 * parameters[MY5] + t27 * parameters[MX5] + (t30 * t262 + t47 * t263);
+    /* link j5: inertia, momentum beyond */
     const rx90_real_t t285 = t20 * parameters[MX4] + t19 * parameters[MZ4] + t284;
-    const rx90_real_t t286 = t17 * t285 - t11 * t283;
-    const rx90_real_t t287 = t24 * t256 - t25 * t255;
-    const rx90_real_t t288 = parameters[MZ4] + t287;
-    const rx90_real_t t289 = parameters[M5] + parameters[M6];
-    const rx90_real_t t290 = parameters[M4] + t289;
-    const rx90_real_t t291 = RX90_C(0.45) * t290;
+    const rx90_real_t t286 = t17 * t285 - t11 * t283; /* link j4: inertia, momentum beyond */
+    const rx90_real_t t287 = t24 * t256 - t25 * t255; /* link j5: column of the mass matrix */
+    const rx90_real_t t288 = parameters[MZ4] + t287; /* link j5: inertia of it and all beyond */
+    const rx90_real_t t289 = parameters[M5] + parameters[M6]; /* link j6: inertia of it and all beyond */
+    const rx90_real_t t290 = parameters[M4] + t289; /* link j5: inertia of it and all beyond */
+    const rx90_real_t t291 = RX90_C(0.45) * t290; /* link j4: inertia of it and all beyond */
     const rx90_real_t t292 = t288 + t291;
+    /* link j4: inertia, momentum beyond */
     const rx90_real_t t293 = t11 * t281 + t17 * t282 + (RX90_C(-0.45) * t286 + t292 * t260);
     const rx90_real_t t294 = RX90_C(0.5) * (parameters[ZZ3] + (parameters[XX3] + parameters[YY3]));
     const rx90_real_t t295 = parameters[YY3] - t294;
     const rx90_real_t t296 = t13 * t295 - t7 * parameters[YZ3] + t293;
+    /* link j5: inertia, momentum beyond */
     const rx90_real_t t297 = t19 * parameters[XY4] - t35 * t247 + (t229 + t279);
     const rx90_real_t t298 = t25 * t240 + t24 * t241 - (t19 * t243 + t35 * parameters[XY4]);
     const rx90_real_t t299 = parameters[XX3] - t294;
+    /* link j4: inertia, momentum beyond */
     const rx90_real_t t300 = t13 * t299 - t5 * parameters[XZ3] + (t17 * t298 - t11 * t297);
-    const rx90_real_t t301 = t1 * (t275 - t278) + t3 * (t296 - t300);
+    const rx90_real_t t301 = t1 * (t275 - t278) + t3 * (t296 - t300); /* link j3: inertia, momentum beyond */
     const rx90_real_t t302 = t1 * t301;
+    /* link j4: inertia, momentum beyond */
     const rx90_real_t t303 = t13 * parameters[MY3] - t7 * parameters[MZ3] + (t286 - t290 * t260);
     const rx90_real_t t304 = t5 * parameters[MZ3] - t13 * parameters[MX3] + t267;
-    const rx90_real_t t305 = RX90_C(0.45) * (t1 * t303 - t3 * t304);
-    const rx90_real_t t306 = t259 - parameters[MX3];
+    const rx90_real_t t305 = RX90_C(0.45) * (t1 * t303 - t3 * t304); /* link j3: inertia, momentum beyond */
+    const rx90_real_t t306 = t259 - parameters[MX3]; /* link j4: inertia of it and all beyond */
     const rx90_real_t t307 = parameters[MY3] + t292;
-    const rx90_real_t t308 = t3 * t306 - t1 * t307;
-    const rx90_real_t t309 = RX90_C(0.45) * dq[1];
-    const rx90_real_t t310 = t308 * t309;
-    const rx90_real_t t311 = parameters[MZ3] + t269;
-    const rx90_real_t t312 = RX90_C(-0.45) * t67;
-    const rx90_real_t t313 = t311 * t312;
+    const rx90_real_t t308 = t3 * t306 - t1 * t307; /* link j3: column of the mass matrix */
+    const rx90_real_t t309 = RX90_C(0.45) * dq[1]; /* link j3: velocity of its origin */
+    const rx90_real_t t310 = t308 * t309; /* link j3: inertia, momentum beyond */
+    const rx90_real_t t311 = parameters[MZ3] + t269; /* link j4: inertia of it and all beyond */
+    const rx90_real_t t312 = RX90_C(-0.45) * t67; /* link j3: velocity of its origin */
+    const rx90_real_t t313 = t311 * t312; /* link j3: inertia, momentum beyond */
     const rx90_real_t t314 = t313 - t310 - t305;
     const rx90_real_t t315 = t67 * parameters[XZ2];
     const rx90_real_t t316 = dq[1] * parameters[XY2];
@@ -516,137 +570,153 @@ int rx90_inverse_dynamics_derivatives_standard(
     const rx90_real_t t321 = RX90_C(0.5) * (parameters[ZZ2] + (parameters[XX2] + parameters[YY2]));
     const rx90_real_t t322 = t321 - parameters[YY2];
     const rx90_real_t t323 = t67 * parameters[YZ2] + dq[1] * t322 + (t320 - t296);
-    const rx90_real_t t324 = t3 * t307 + t1 * t306;
-    const rx90_real_t t325 = parameters[M3] + t290;
-    const rx90_real_t t326 = RX90_C(-0.45) * t325;
+    const rx90_real_t t324 = t3 * t307 + t1 * t306; /* link j3: column of the mass matrix */
+    const rx90_real_t t325 = parameters[M3] + t290; /* link j4: inertia of it and all beyond */
+    const rx90_real_t t326 = RX90_C(-0.45) * t325; /* link j3: inertia of it and all beyond */
     const rx90_real_t t327 = t324 + t326;
+    /* link j3: inertia, momentum beyond */
     const rx90_real_t t328 = RX90_C(0.45) * (t3 * t303 + t1 * t304) + t327 * t309;
     const rx90_real_t t329 = parameters[XX2] - t321;
     const rx90_real_t t330 = dq[1] * t329 - t72 * parameters[XZ2] + (t300 + t320 + t328);
+    /* link j2: inertia, momentum beyond */
     const rx90_real_t t331 = t2 * (t2 * (t319 - t317) + t0 * (t323 + t330));
     input_by_dq[0] = RX90_C(333.33333333333337) * parameters[FV1] + RX90_C(0.06666666666666667) * (t317
         + t331);
-    const rx90_real_t t332 = t17 * t249;
+    const rx90_real_t t332 = t17 * t249; /* link j4: inertia, momentum beyond */
     const rx90_real_t t333 = t5 * parameters[XY3] - t7 * t299 - (t248 - t332 - t259 * t270);
     const rx90_real_t t334 = t17 * t283 + t11 * t285;
     const rx90_real_t t335 = t11 * t282 - t17 * t281 + (RX90_C(-0.45) * t334 + t292 * t270);
     const rx90_real_t t336 = t7 * parameters[XY3] - t5 * t295 + t335;
     const rx90_real_t t337 = t7 * parameters[MX3] - t5 * parameters[MY3] + (t334 - t290 * t270);
+    /* link j3: inertia, momentum beyond */
     const rx90_real_t t338 = t1 * t333 + t3 * t336 + (RX90_C(0.45) * t337 + t327 * t312);
+    /* link j2: derivatives */
     const rx90_real_t t339 = RX90_C(2.0) * (t72 * parameters[XY2] - t67 * t329 + t338);
+    /* link j3: inertia, momentum beyond */
     const rx90_real_t t340 = t67 * parameters[XY2] + t72 * t322 - (t3 * t333 - t1 * t336 + t308 * t312);
-    const rx90_real_t t341 = RX90_C(2.0) * t340;
+    const rx90_real_t t341 = RX90_C(2.0) * t340; /* link j2: derivatives */
     input_by_dq[6] = RX90_C(0.03333333333333333) * (t0 * t339 - t2 * t341);
-    const rx90_real_t t342 = RX90_C(2.0) * t333;
+    const rx90_real_t t342 = RX90_C(2.0) * t333; /* link j3: derivatives */
     const rx90_real_t t343 = RX90_C(2.0) * t336;
-    const rx90_real_t t344 = RX90_C(-0.9) * t67;
-    const rx90_real_t t345 = t1 * t342 + t3 * t343 + t324 * t344;
+    const rx90_real_t t344 = RX90_C(-0.9) * t67; /* link j6: derivatives */
+    const rx90_real_t t345 = t1 * t342 + t3 * t343 + t324 * t344; /* link j3: derivatives */
     const rx90_real_t t346 = t3 * t342 - t1 * t343 + t308 * t344;
     input_by_dq[12] = RX90_C(0.03333333333333333) * (t0 * t345 + t2 * t346);
-    const rx90_real_t t347 = RX90_C(2.0) * t297;
+    const rx90_real_t t347 = RX90_C(2.0) * t297; /* link j4: derivatives */
     const rx90_real_t t348 = RX90_C(2.0) * t298;
     const rx90_real_t t349 = t17 * t348 - t11 * t347;
     const rx90_real_t t350 = RX90_C(2.0) * t276;
-    const rx90_real_t t351 = RX90_C(0.9) * t5;
+    const rx90_real_t t351 = RX90_C(0.9) * t5; /* link j6: derivatives */
     const rx90_real_t t352 = RX90_C(-0.9) * t13;
-    const rx90_real_t t353 = t259 * t352 - t269 * t351 - t350;
-    const rx90_real_t t354 = RX90_C(0.9) * dq[1];
-    const rx90_real_t t355 = t3 * t269;
-    const rx90_real_t t356 = t1 * t349 + t3 * t353 + (t259 * t354 - t355 * t344);
-    const rx90_real_t t357 = t1 * t269;
-    const rx90_real_t t358 = t3 * t349 - t1 * t353 + t357 * t344;
+    const rx90_real_t t353 = t259 * t352 - t269 * t351 - t350; /* link j4: derivatives */
+    const rx90_real_t t354 = RX90_C(0.9) * dq[1]; /* link j6: derivatives */
+    const rx90_real_t t355 = t3 * t269; /* link j4: column of the mass matrix */
+    const rx90_real_t t356 = t1 * t349 + t3 * t353 + (t259 * t354 - t355 * t344); /* link j4: derivatives */
+    const rx90_real_t t357 = t1 * t269; /* link j4: column of the mass matrix */
+    const rx90_real_t t358 = t3 * t349 - t1 * t353 + t357 * t344; /* link j4: derivatives */
     input_by_dq[18] = RX90_C(0.1) * (t0 * t356 + t2 * t358);
-    const rx90_real_t t359 = RX90_C(2.0) * t245;
+    const rx90_real_t t359 = RX90_C(2.0) * t245; /* link j5: derivatives */
     const rx90_real_t t360 = RX90_C(-2.0) * t246;
     const rx90_real_t t361 = t24 * t359 + t25 * t360;
     const rx90_real_t t362 = RX90_C(2.0) * t235;
     const rx90_real_t t363 = t17 * t362 - t11 * t361 + t257 * t351;
     const rx90_real_t t364 = t24 * t360 - t25 * t359;
-    const rx90_real_t t365 = t11 * t287;
+    const rx90_real_t t365 = t11 * t287; /* link j5: column of the mass matrix */
     const rx90_real_t t366 = t17 * t287;
-    const rx90_real_t t367 = t365 * t351 + t366 * t352 - t364;
-    const rx90_real_t t368 = t3 * t365 + t1 * t257;
-    const rx90_real_t t369 = t1 * t363 + t3 * t367 + (t366 * t354 + t368 * t344);
-    const rx90_real_t t370 = t1 * t365 - t3 * t257;
-    const rx90_real_t t371 = t3 * t363 - t1 * t367 - t370 * t344;
+    const rx90_real_t t367 = t365 * t351 + t366 * t352 - t364; /* link j5: derivatives */
+    const rx90_real_t t368 = t3 * t365 + t1 * t257; /* link j5: column of the mass matrix */
+    const rx90_real_t t369 = t1 * t363 + t3 * t367 + (t366 * t354 + t368 * t344); /* link j5: derivatives */
+    const rx90_real_t t370 = t1 * t365 - t3 * t257; /* link j5: column of the mass matrix */
+    const rx90_real_t t371 = t3 * t363 - t1 * t367 - t370 * t344; /* link j5: derivatives */
     input_by_dq[24] = RX90_C(0.1) * (t0 * t369 + t2 * t371);
-    const rx90_real_t t372 = RX90_C(2.0) * t226;
+    const rx90_real_t t372 = RX90_C(2.0) * t226; /* link j6: derivatives */
     const rx90_real_t t373 = RX90_C(2.0) * t227;
     const rx90_real_t t374 = t47 * t372 - t30 * t373;
     const rx90_real_t t375 = RX90_C(-2.0) * t217;
     const rx90_real_t t376 = t24 * t374 + t25 * t375;
     const rx90_real_t t377 = t30 * t372 + t47 * t373;
-    const rx90_real_t t378 = t25 * t251;
-    const rx90_real_t t379 = t17 * t377 - t11 * t376 + t378 * t351;
+    const rx90_real_t t378 = t25 * t251; /* link j6: column of the mass matrix */
+    const rx90_real_t t379 = t17 * t377 - t11 * t376 + t378 * t351; /* link j6: derivatives */
     const rx90_real_t t380 = t24 * t375 - t25 * t374;
-    const rx90_real_t t381 = t24 * t251;
+    const rx90_real_t t381 = t24 * t251; /* link j6: column of the mass matrix */
     const rx90_real_t t382 = t11 * t381 - t17 * t254;
     const rx90_real_t t383 = t17 * t381 + t11 * t254;
-    const rx90_real_t t384 = t382 * t351 + t383 * t352 - t380;
-    const rx90_real_t t385 = t3 * t382 + t1 * t378;
-    const rx90_real_t t386 = t1 * t379 + t3 * t384 + (t383 * t354 + t385 * t344);
-    const rx90_real_t t387 = t1 * t382 - t3 * t378;
-    const rx90_real_t t388 = t3 * t379 - t1 * t384 - t387 * t344;
+    const rx90_real_t t384 = t382 * t351 + t383 * t352 - t380; /* link j6: derivatives */
+    const rx90_real_t t385 = t3 * t382 + t1 * t378; /* link j6: column of the mass matrix */
+    const rx90_real_t t386 = t1 * t379 + t3 * t384 + (t383 * t354 + t385 * t344); /* link j6: derivatives */
+    const rx90_real_t t387 = t1 * t382 - t3 * t378; /* link j6: column of the mass matrix */
+    const rx90_real_t t388 = t3 * t379 - t1 * t384 - t387 * t344; /* link j6: derivatives */
     input_by_dq[30] = RX90_C(0.16666666666666666) * (t0 * t386 + t2 * t388);
+    /* link j6: inertia of it and all beyond */
     const rx90_real_t t389 = t47 * t111 + parameters[XY6] * (RX90_C(-2.0) * t30);
     const rx90_real_t t390 = t47 * t389;
     const rx90_real_t t391 = parameters[XX5] + (parameters[YY6] + t390);
     const rx90_real_t t392 = parameters[YY5] + parameters[ZZ6];
+    /* link j6: column of the mass matrix */
     const rx90_real_t t393 = t30 * parameters[YZ6] - t47 * parameters[XZ6];
-    const rx90_real_t t394 = t393 - parameters[XY5];
+    const rx90_real_t t394 = t393 - parameters[XY5]; /* link j6: inertia of it and all beyond */
+    /* link j5: inertia of it and all beyond */
     const rx90_real_t t395 = t24 * (t391 - t392) + t394 * (RX90_C(2.0) * t25);
     const rx90_real_t t396 = t24 * t395;
     const rx90_real_t t397 = parameters[XX4] + (t392 + t396);
+    /* link j6: inertia of it and all beyond */
     const rx90_real_t t398 = t390 - parameters[XX6] - parameters[ZZ5];
-    const rx90_real_t t399 = t398 - parameters[YY4];
+    const rx90_real_t t399 = t398 - parameters[YY4]; /* link j5: inertia of it and all beyond */
+    /* link j6: inertia of it and all beyond */
     const rx90_real_t t400 = parameters[XY6] + t30 * t389 - parameters[XZ5];
+    /* link j6: column of the mass matrix */
     const rx90_real_t t401 = t30 * parameters[XZ6] + t47 * parameters[YZ6];
-    const rx90_real_t t402 = t401 - parameters[YZ5];
-    const rx90_real_t t403 = t24 * t400 - t25 * t402;
-    const rx90_real_t t404 = parameters[XY4] + t403;
+    const rx90_real_t t402 = t401 - parameters[YZ5]; /* link j6: inertia of it and all beyond */
+    const rx90_real_t t403 = t24 * t400 - t25 * t402; /* link j5: column of the mass matrix */
+    const rx90_real_t t404 = parameters[XY4] + t403; /* link j5: inertia of it and all beyond */
+    /* link j4: inertia of it and all beyond */
     const rx90_real_t t405 = t11 * (t397 + t399) + t404 * (RX90_C(-2.0) * t17);
     const rx90_real_t t406 = t11 * t405;
     const rx90_real_t t407 = RX90_C(0.45) * (t291 + RX90_C(2.0) * t288);
     const rx90_real_t t408 = parameters[XX3] + (t406 - t399 + t407);
-    const rx90_real_t t409 = t396 - t391 - parameters[ZZ4];
-    const rx90_real_t t410 = parameters[YY3] - t409;
-    const rx90_real_t t411 = t394 - t25 * t395 - parameters[XZ4];
-    const rx90_real_t t412 = t25 * t400 + t24 * t402;
-    const rx90_real_t t413 = parameters[YZ4] + t412;
-    const rx90_real_t t414 = RX90_C(0.45) * t259;
+    const rx90_real_t t409 = t396 - t391 - parameters[ZZ4]; /* link j5: inertia of it and all beyond */
+    const rx90_real_t t410 = parameters[YY3] - t409; /* link j4: inertia of it and all beyond */
+    const rx90_real_t t411 = t394 - t25 * t395 - parameters[XZ4]; /* link j5: inertia of it and all beyond */
+    const rx90_real_t t412 = t25 * t400 + t24 * t402; /* link j5: column of the mass matrix */
+    const rx90_real_t t413 = parameters[YZ4] + t412; /* link j5: inertia of it and all beyond */
+    const rx90_real_t t414 = RX90_C(0.45) * t259; /* link j4: column of the mass matrix */
     const rx90_real_t t415 = t11 * t411 + t17 * t413 - t414;
-    const rx90_real_t t416 = t415 - parameters[XY3];
+    const rx90_real_t t416 = t415 - parameters[XY3]; /* link j4: inertia of it and all beyond */
+    /* link j3: inertia of it and all beyond */
     const rx90_real_t t417 = t1 * (t408 - t410) - t416 * (RX90_C(-2.0) * t3);
     const rx90_real_t t418 = t1 * t417;
     const rx90_real_t t419 = parameters[XX2] + (t410 + t418);
     const rx90_real_t t420 = RX90_C(-0.45) * (t326 + RX90_C(2.0) * t324);
     const rx90_real_t t421 = parameters[YY2] + (t408 - t418 + t420);
     const rx90_real_t t422 = parameters[XY2] + (t3 * t417 - t416 + RX90_C(0.45) * t308);
+    /* link j2: inertia of it and all beyond */
     const rx90_real_t t423 = t2 * (t2 * (t421 - t419) + t422 * (RX90_C(2.0) * t0));
     input_by_ddq[0] = RX90_C(333.33333333333337) * parameters[IA1]
         + RX90_C(0.03333333333333333) * (parameters[ZZ1] + (t419 + t423));
-    const rx90_real_t t424 = t404 + t17 * t405 - parameters[XZ3];
+    const rx90_real_t t424 = t404 + t17 * t405 - parameters[XZ3]; /* link j4: inertia of it and all beyond */
+    /* link j4: column of the mass matrix */
     const rx90_real_t t425 = t17 * t411 - t11 * t413 + RX90_C(-0.45) * t269;
-    const rx90_real_t t426 = parameters[YZ3] + t425;
-    const rx90_real_t t427 = t1 * t424 + t3 * t426;
+    const rx90_real_t t426 = parameters[YZ3] + t425; /* link j4: inertia of it and all beyond */
+    const rx90_real_t t427 = t1 * t424 + t3 * t426; /* link j3: column of the mass matrix */
+    /* link j3: inertia of it and all beyond */
     const rx90_real_t t428 = parameters[XZ2] + (RX90_C(-0.45) * t311 - t427);
-    const rx90_real_t t429 = t3 * t424 - t1 * t426;
-    const rx90_real_t t430 = t429 - parameters[YZ2];
+    const rx90_real_t t429 = t3 * t424 - t1 * t426; /* link j3: column of the mass matrix */
+    const rx90_real_t t430 = t429 - parameters[YZ2]; /* link j3: inertia of it and all beyond */
     const rx90_real_t t431 = RX90_C(0.03333333333333333) * (t0 * t428 - t2 * t430);
     input_by_ddq[6] = t431;
     const rx90_real_t t432 = RX90_C(-0.03333333333333333) * (t0 * t427 + t2 * t429);
     input_by_ddq[12] = t432;
-    const rx90_real_t t433 = t3 * t409 - t1 * t415;
+    const rx90_real_t t433 = t3 * t409 - t1 * t415; /* link j4: column of the mass matrix */
     const rx90_real_t t434 = t414 + (t3 * t415 + t1 * t409);
     const rx90_real_t t435 = t0 * t433 - t2 * t434;
     input_by_ddq[18] = RX90_C(0.1) * t435;
-    const rx90_real_t t436 = RX90_C(0.45) * t366;
+    const rx90_real_t t436 = RX90_C(0.45) * t366; /* link j5: column of the mass matrix */
     const rx90_real_t t437 = t11 * t403 + t17 * t398 - t436;
     const rx90_real_t t438 = t3 * t412 - t1 * t437;
     const rx90_real_t t439 = t436 + (t3 * t437 + t1 * t412);
     const rx90_real_t t440 = t0 * t438 - t2 * t439;
     input_by_ddq[24] = RX90_C(0.1) * t440;
-    const rx90_real_t t441 = t24 * t393 + t25 * parameters[ZZ6];
+    const rx90_real_t t441 = t24 * t393 + t25 * parameters[ZZ6]; /* link j6: column of the mass matrix */
     const rx90_real_t t442 = RX90_C(0.45) * t383;
     const rx90_real_t t443 = t11 * t441 + t17 * t401 - t442;
     const rx90_real_t t444 = t25 * t393 - t24 * parameters[ZZ6];
@@ -654,56 +724,73 @@ int rx90_inverse_dynamics_derivatives_standard(
     const rx90_real_t t446 = t442 + (t3 * t443 + t1 * t444);
     const rx90_real_t t447 = t0 * t445 - t2 * t446;
     input_by_ddq[30] = RX90_C(0.16666666666666666) * t447;
-    const rx90_real_t t448 = RX90_C(2.0) * t67;
+    const rx90_real_t t448 = RX90_C(2.0) * t67; /* link j2: derivatives */
     const rx90_real_t t449 = RX90_C(-2.0) * t72;
-    const rx90_real_t t450 = t173 + t68;
+    const rx90_real_t t450 = t173 + t68; /* link j3: motion */
+    /* link j2: derivatives */
     const rx90_real_t t451 = t317 * t448 + t323 * t449 + (t79 * t419 - t164 * t422 - t450 * t428);
-    const rx90_real_t t452 = parameters[MZ2] + t311;
+    const rx90_real_t t452 = parameters[MZ2] + t311; /* link j3: inertia of it and all beyond */
+    /* link j2: derivatives */
     const rx90_real_t t453 = t330 * t448 + t319 * t449 + (t79 * t422 - t164 * t421 + t450 * t430);
     const rx90_real_t t454 = t0 * (t175 + (t451 + t70 * t452)) + t2 * (t168 + (t453 - t75 * t452));
     input_by_q[1] = RX90_C(0.03333333333333333) * t454;
+    /* link j4: inertia of it and all beyond */
     const rx90_real_t t455 = parameters[ZZ3] + (t397 - t406 + t407);
-    const rx90_real_t t456 = parameters[ZZ2] + (t455 + t420);
+    const rx90_real_t t456 = parameters[ZZ2] + (t455 + t420); /* link j3: inertia of it and all beyond */
+    /* link j2: derivatives */
     const rx90_real_t t457 = t79 * t428 + t164 * t430 - t450 * t456 + (t67 * t339 + t72 * t341);
     const rx90_real_t t458 = t70 * (t327 - parameters[MX2]) - t75 * (t308 - parameters[MY2]) + t457;
     input_by_q[7] = RX90_C(0.03333333333333333) * t458;
-    const rx90_real_t t459 = t455 - RX90_C(0.45) * t324;
+    const rx90_real_t t459 = t455 - RX90_C(0.45) * t324; /* link j3: column of the mass matrix */
+    /* link j3: derivatives */
     const rx90_real_t t460 = t67 * t345 - t72 * t346 + (t164 * t429 - t79 * t427 - t450 * t459);
     input_by_q[13] = RX90_C(0.03333333333333333) * (t460 + (t70 * t324 - t75 * t308));
-    const rx90_real_t t461 = t425 + RX90_C(0.45) * t355;
+    const rx90_real_t t461 = t425 + RX90_C(0.45) * t355; /* link j4: column of the mass matrix */
+    /* link j4: derivatives */
     const rx90_real_t t462 = t67 * t356 - t72 * t358 + (t79 * t433 + t164 * t434 - t450 * t461);
     input_by_q[19] = RX90_C(0.1) * (t462 - (t75 * t357 + t70 * t355));
+    /* link j5: column of the mass matrix */
     const rx90_real_t t463 = t17 * t403 - t11 * t398 + RX90_C(0.45) * t365;
     const rx90_real_t t464 = t463 + RX90_C(-0.45) * t368;
+    /* link j5: derivatives */
     const rx90_real_t t465 = t67 * t369 - t72 * t371 + (t79 * t438 + t164 * t439 - t450 * t464);
     input_by_q[25] = RX90_C(0.1) * (t465 + (t75 * t370 + t70 * t368));
+    /* link j6: column of the mass matrix */
     const rx90_real_t t466 = t17 * t441 - t11 * t401 + RX90_C(0.45) * t382;
     const rx90_real_t t467 = t466 + RX90_C(-0.45) * t385;
+    /* link j6: derivatives */
     const rx90_real_t t468 = t67 * t386 - t72 * t388 + (t79 * t445 + t164 * t446 - t450 * t467);
     input_by_q[31] = RX90_C(0.16666666666666666) * (t468 + (t75 * t387 + t70 * t385));
     const rx90_real_t t469 = t294 - parameters[ZZ3];
+    /* link j4: inertia, momentum beyond */
     const rx90_real_t t470 = t244 + t332 - t269 * t260 - (t13 * parameters[YZ3] + t7 * t469);
     const rx90_real_t t471 = t13 * parameters[XZ3] + t5 * t469 + (t17 * t297 + t11 * t298);
     const rx90_real_t t472 = parameters[ZZ2] - t321;
+    /* link j3: inertia, momentum beyond */
     const rx90_real_t t473 = t67 * t472 - dq[1] * parameters[YZ2] + (t1 * t470 - t3 * t471);
+    /* link j2: derivatives */
     const rx90_real_t t474 = t0 * (RX90_C(2.0) * t473 + (t419 * t448 + t422 * t449));
+    /* link j3: inertia, momentum beyond */
     const rx90_real_t t475 = dq[1] * parameters[XZ2] - t72 * t472 + (t3 * t470 + t1 * t471 - t311 * t309);
+    /* link j2: derivatives */
     const rx90_real_t t476 = t2 * (RX90_C(2.0) * t475 + (t422 * t448 + t421 * t449));
     input_by_dq[1] = RX90_C(0.03333333333333333) * (t474 + t476);
+    /* link j4: inertia, momentum beyond */
     const rx90_real_t t477 = t277 - t273 + (t272 + (t250 - t234 - t271));
+    /* link j2: derivatives */
     const rx90_real_t t478 = RX90_C(2.0) * (t318 - t315 + (t314 + (t477 - t313))) + RX90_C(2.0) * (t67 * t428
         + t72 * t430);
     input_by_dq[7] = RX90_C(333.33333333333337) * parameters[FV2] + RX90_C(0.03333333333333333) * t478;
-    const rx90_real_t t479 = RX90_C(2.0) * t477;
+    const rx90_real_t t479 = RX90_C(2.0) * t477; /* link j3: derivatives */
     const rx90_real_t t480 = t479 - t308 * t354 + RX90_C(2.0) * (t72 * t429 - t67 * t427);
     input_by_dq[13] = RX90_C(0.03333333333333333) * t480;
-    const rx90_real_t t481 = t17 * t347 + t11 * t348;
+    const rx90_real_t t481 = t17 * t347 + t11 * t348; /* link j4: derivatives */
     const rx90_real_t t482 = t481 - t357 * t354 + RX90_C(2.0) * (t67 * t433 + t72 * t434);
     input_by_dq[19] = RX90_C(0.1) * t482;
-    const rx90_real_t t483 = t17 * t361 + t11 * t362 - t257 * t352;
+    const rx90_real_t t483 = t17 * t361 + t11 * t362 - t257 * t352; /* link j5: derivatives */
     const rx90_real_t t484 = t483 + t370 * t354 + RX90_C(2.0) * (t67 * t438 + t72 * t439);
     input_by_dq[25] = RX90_C(0.1) * t484;
-    const rx90_real_t t485 = t17 * t376 + t11 * t377 - t378 * t352;
+    const rx90_real_t t485 = t17 * t376 + t11 * t377 - t378 * t352; /* link j6: derivatives */
     const rx90_real_t t486 = t485 + t387 * t354 + RX90_C(2.0) * (t67 * t445 + t72 * t446);
     input_by_dq[31] = RX90_C(0.16666666666666666) * t486;
     input_by_ddq[1] = t431;
@@ -713,7 +800,7 @@ int rx90_inverse_dynamics_derivatives_standard(
     input_by_ddq[19] = RX90_C(0.1) * t461;
     input_by_ddq[25] = RX90_C(0.1) * t464;
     input_by_ddq[31] = RX90_C(0.16666666666666666) * t467;
-    const rx90_real_t t488 = RX90_C(-2.0) * t7;
+    const rx90_real_t t488 = RX90_C(-2.0) * t7; /* link j3: derivatives */
     const rx90_real_t t489 = RX90_C(-2.0) * t5;
     const rx90_real_t t490 = t300 * t488 - t278 * t489 + (t31 * t416 + t12 * t410 + t169 * t426);
     const rx90_real_t t491 = t156 - (t490 + t86 * t311);
@@ -732,13 +819,16 @@ int rx90_inverse_dynamics_derivatives_standard(
     input_by_q[8] = RX90_C(0.03333333333333333) * t502;
     const rx90_real_t t503 = RX90_C(0.03333333333333333) * (t501 + (t7 * t342 + t5 * t343 - t500));
     input_by_q[14] = t503;
+    /* link j4: derivatives */
     const rx90_real_t t504 = t7 * t349 + t5 * t353 + (t12 * t409 - t31 * t415 - t169 * t425);
     input_by_q[20] = RX90_C(0.1) * (t504 - t86 * t269);
+    /* link j5: derivatives */
     const rx90_real_t t505 = t7 * t363 + t5 * t367 + (t12 * t412 - t31 * t437 - t169 * t463);
     input_by_q[26] = RX90_C(0.1) * (t505 + (t86 * t365 + t77 * t257));
+    /* link j6: derivatives */
     const rx90_real_t t506 = t7 * t379 + t5 * t384 + (t12 * t444 - t31 * t443 - t169 * t466);
     input_by_q[32] = RX90_C(0.16666666666666666) * (t506 + (t86 * t382 + t77 * t378));
-    const rx90_real_t t507 = RX90_C(2.0) * t470 - (t408 * t488 + t416 * t489);
+    const rx90_real_t t507 = RX90_C(2.0) * t470 - (t408 * t488 + t416 * t489); /* link j3: derivatives */
     const rx90_real_t t508 = RX90_C(2.0) * t471 + (t416 * t488 + t410 * t489);
     const rx90_real_t t509 = t3 * t507 + t1 * t508 + RX90_C(0.45) * (t307 * t488 - t306 * t489);
     const rx90_real_t t510 = t0 * (t1 * t507 - t3 * t508) + t2 * t509;
@@ -761,7 +851,7 @@ int rx90_inverse_dynamics_derivatives_standard(
     input_by_ddq[20] = RX90_C(0.1) * t425;
     input_by_ddq[26] = RX90_C(0.1) * t463;
     input_by_ddq[32] = RX90_C(0.16666666666666666) * t466;
-    const rx90_real_t t517 = RX90_C(2.0) * t35;
+    const rx90_real_t t517 = RX90_C(2.0) * t35; /* link j4: derivatives */
     const rx90_real_t t518 = RX90_C(-2.0) * t19;
     const rx90_real_t t519 = t234 * t517 + t244 * t518 - (t38 * t404 - t18 * t397 - t185 * t411);
     const rx90_real_t t520 = t131 + (t519 + t85 * t288);
@@ -786,11 +876,13 @@ int rx90_inverse_dynamics_derivatives_standard(
     input_by_q[15] = RX90_C(0.03333333333333333) * t534;
     const rx90_real_t t537 = RX90_C(0.1) * (t530 + (t529 + (t35 * t347 - t19 * t348)));
     input_by_q[21] = t537;
+    /* link j5: derivatives */
     const rx90_real_t t538 = t35 * t361 - t19 * t362 + (t185 * t412 - (t18 * t403 + t38 * t398));
     input_by_q[27] = RX90_C(0.1) * (t538 + t93 * t287);
+    /* link j6: derivatives */
     const rx90_real_t t539 = t35 * t376 - t19 * t377 + (t185 * t444 - (t18 * t441 + t38 * t401));
     input_by_q[33] = RX90_C(0.16666666666666666) * (t539 + (t93 * t381 + t85 * t254));
-    const rx90_real_t t540 = RX90_C(2.0) * t281 + (t397 * t517 + t404 * t518);
+    const rx90_real_t t540 = RX90_C(2.0) * t281 + (t397 * t517 + t404 * t518); /* link j4: derivatives */
     const rx90_real_t t541 = RX90_C(-2.0) * t282 + (t404 * t517 - t399 * t518);
     const rx90_real_t t542 = RX90_C(2.0) * t285 + t288 * t518;
     const rx90_real_t t543 = RX90_C(-2.0) * t283 - t288 * t517;
@@ -817,7 +909,7 @@ int rx90_inverse_dynamics_derivatives_standard(
     const rx90_real_t t554 = RX90_C(-0.1) * t412;
     input_by_ddq[27] = t554;
     input_by_ddq[33] = RX90_C(-0.16666666666666666) * t444;
-    const rx90_real_t t555 = RX90_C(2.0) * t27;
+    const rx90_real_t t555 = RX90_C(2.0) * t27; /* link j5: derivatives */
     const rx90_real_t t556 = RX90_C(2.0) * t26;
     const rx90_real_t t557 = t225 * t556 - t216 * t555 + (t59 * t391 - t42 * t394 + t146 * t400);
     const rx90_real_t t558 = t117 + (t557 - t92 * t252);
@@ -846,9 +938,10 @@ int rx90_inverse_dynamics_derivatives_standard(
     input_by_q[22] = RX90_C(0.1) * t573;
     const rx90_real_t t578 = RX90_C(0.1) * (t563 + (t562 + (t26 * t360 - t27 * t359)));
     input_by_q[28] = t578;
+    /* link j6: derivatives */
     const rx90_real_t t579 = t26 * t375 - t27 * t374 + (t42 * parameters[ZZ6] - t59 * t393 + t146 * t401);
     input_by_q[34] = RX90_C(0.16666666666666666) * (t579 + t91 * t251);
-    const rx90_real_t t580 = RX90_C(2.0) * t240 + (t391 * t555 - t394 * t556);
+    const rx90_real_t t580 = RX90_C(2.0) * t240 + (t391 * t555 - t394 * t556); /* link j5: derivatives */
     const rx90_real_t t581 = RX90_C(2.0) * t241 + (t392 * t556 - t394 * t555);
     const rx90_real_t t582 = t25 * t581 - t24 * t580;
     const rx90_real_t t583 = t362 - (t400 * t555 + t402 * t556);
@@ -878,7 +971,7 @@ int rx90_inverse_dynamics_derivatives_standard(
     input_by_ddq[22] = t554;
     input_by_ddq[28] = RX90_C(250.0) * parameters[IA5] + RX90_C(-0.1) * t398;
     input_by_ddq[34] = RX90_C(-0.16666666666666666) * t401;
-    const rx90_real_t t597 = RX90_C(2.0) * t49;
+    const rx90_real_t t597 = RX90_C(2.0) * t49; /* link j6: derivatives */
     const rx90_real_t t598 = RX90_C(2.0) * t54;
     const rx90_real_t t599 = t211 * t598 - t204 * t597 - (t53 * parameters[XX6] - t48 * parameters[XY6]
         + t140 * parameters[XZ6]);

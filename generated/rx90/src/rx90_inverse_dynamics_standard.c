@@ -6,7 +6,7 @@
  * Arm rx90, description 10f0505273a073e2.
  * SPDX-License-Identifier: 0BSD
  *
- * Operations: 612 (320 mul, 292 add, 0 neg), 10 trig, 6 other.
+ * Operations: 612 (320 mul, 292 add, 0 neg), 10 trig, 6 other calls (sign, select and the like).
  *
  * @param[in]   q           [6]   [rad]      joint coordinates; norm at most 10000
  * @param[in]   dq          [6]   [rad/s]    joint velocities; norm at most 100000
@@ -106,11 +106,11 @@
  */
 #include "rx90_private.h"
 
-#if RX90_GENERATION != 0xD1F0D18FUL
+#if RX90_GENERATION != 0x88006983UL
 #error "rx90.h and rx90_inverse_dynamics_standard.c are of different generations: generate the arm again"
 #endif
 
-int rx90_inverse_dynamics_standard(
+rx90_status_t rx90_inverse_dynamics_standard(
     const rx90_real_t q[RX90_N_JOINTS],
     const rx90_real_t dq[RX90_N_JOINTS],
     const rx90_real_t ddq[RX90_N_JOINTS],
@@ -121,7 +121,7 @@ int rx90_inverse_dynamics_standard(
         M2, XX3, XY3, XZ3, YY3, YZ3, ZZ3, MX3, MY3, MZ3, M3, XX4, XY4, XZ4, YY4, YZ4, ZZ4, MX4, MY4, MZ4, M4,
         XX5, XY5, XZ5, YY5, YZ5, ZZ5, MX5, MY5, MZ5, M5, XX6, XY6, XZ6, YY6, YZ6, ZZ6, MX6, MY6, MZ6, M6, FV1,
         FC1, IA1, FV2, FC2, IA2, FV3, FC3, IA3, FV4, FC4, IA4, FV5, FC5, IA5, FV6, FC6, IA6 };
-    int status = RX90_STATUS_OK;
+    rx90_status_t status = RX90_STATUS_OK;
 
     if (!rx90_within_joints(q, RX90_C(1.0e8))
         || !rx90_within_joints(dq, RX90_C(1.0e10))
@@ -144,44 +144,44 @@ int rx90_inverse_dynamics_standard(
     RX90_SINCOS(q[4], &t25, &t24);
     rx90_real_t t30, t47;
     RX90_SINCOS(q[5], &t30, &t47);
-    const rx90_real_t t4 = t0 * t1 + t2 * t3;
+    const rx90_real_t t4 = t0 * t1 + t2 * t3; /* link j3: motion */
     const rx90_real_t t5 = dq[0] * t4;
     const rx90_real_t t6 = t2 * t1 - t0 * t3;
     const rx90_real_t t7 = dq[0] * t6;
     const rx90_real_t t8 = t5 * t7;
     const rx90_real_t t9 = ddq[1] + ddq[2];
-    const rx90_real_t t10 = t8 - t9;
-    const rx90_real_t t12 = ddq[0] * t4;
+    const rx90_real_t t10 = t8 - t9; /* link j4: motion */
+    const rx90_real_t t12 = ddq[0] * t4; /* link j3: motion */
     const rx90_real_t t13 = dq[1] + dq[2];
     const rx90_real_t t14 = t7 * t13;
     const rx90_real_t t15 = t12 + t14;
-    const rx90_real_t t16 = t14 + t15;
+    const rx90_real_t t16 = t14 + t15; /* link j4: motion */
     const rx90_real_t t18 = t17 * t16 - t11 * t10;
     const rx90_real_t t19 = t11 * t5 - t17 * t13;
     const rx90_real_t t20 = dq[3] + t7;
     const rx90_real_t t21 = t19 * t20;
     const rx90_real_t t22 = t18 + t21;
-    const rx90_real_t t23 = ddq[4] + t22;
+    const rx90_real_t t23 = ddq[4] + t22; /* link j5: motion */
     const rx90_real_t t26 = t24 * t19 + t25 * t20;
     const rx90_real_t t27 = t24 * t20 - t25 * t19;
     const rx90_real_t t28 = t26 * t27;
-    const rx90_real_t t29 = t23 - t28;
-    const rx90_real_t t31 = ddq[0] * t6;
+    const rx90_real_t t29 = t23 - t28; /* link j6: motion */
+    const rx90_real_t t31 = ddq[0] * t6; /* link j3: motion */
     const rx90_real_t t32 = t5 * t13;
     const rx90_real_t t33 = t31 - t32;
-    const rx90_real_t t34 = ddq[3] + t33;
+    const rx90_real_t t34 = ddq[3] + t33; /* link j4: motion */
     const rx90_real_t t35 = t17 * t5 + t11 * t13;
     const rx90_real_t t36 = t19 * t35;
-    const rx90_real_t t37 = t34 + t36;
-    const rx90_real_t t38 = t17 * t10 + t11 * t16;
+    const rx90_real_t t37 = t34 + t36; /* link j5: motion */
+    const rx90_real_t t38 = t17 * t10 + t11 * t16; /* link j4: motion */
     const rx90_real_t t39 = t35 * t20;
     const rx90_real_t t40 = t39 - t38;
-    const rx90_real_t t41 = t39 + t40;
+    const rx90_real_t t41 = t39 + t40; /* link j5: motion */
     const rx90_real_t t42 = t25 * t37 - t24 * t41;
     const rx90_real_t t43 = dq[4] + t35;
     const rx90_real_t t44 = t27 * t43;
     const rx90_real_t t45 = t42 + t44;
-    const rx90_real_t t46 = t44 + t45;
+    const rx90_real_t t46 = t44 + t45; /* link j6: motion */
     const rx90_real_t t48 = t30 * t29 - t47 * t46;
     const rx90_real_t t49 = t30 * t26 + t47 * t43;
     const rx90_real_t t50 = dq[5] + t27;
@@ -191,186 +191,230 @@ int rx90_inverse_dynamics_standard(
     const rx90_real_t t54 = t47 * t26 - t30 * t43;
     const rx90_real_t t55 = t54 * t50;
     const rx90_real_t t56 = t53 + t55;
-    const rx90_real_t t57 = t55 + t56;
+    const rx90_real_t t57 = t55 + t56; /* link j6: columns */
+    /* link j6: force and moment */
     const rx90_real_t t58 = t51 * (parameters[YY6] - parameters[ZZ6]) - t52 * parameters[XX6]
         - t57 * parameters[XY6];
-    const rx90_real_t t59 = t24 * t37 + t25 * t41;
+    const rx90_real_t t59 = t24 * t37 + t25 * t41; /* link j5: motion */
     const rx90_real_t t60 = t26 * t43;
     const rx90_real_t t61 = t59 - t60;
-    const rx90_real_t t62 = ddq[5] + t61;
+    const rx90_real_t t62 = ddq[5] + t61; /* link j6: motion */
     const rx90_real_t t63 = t54 * t49;
-    const rx90_real_t t64 = t63 - t62;
-    const rx90_real_t t65 = t49 * t49;
+    const rx90_real_t t64 = t63 - t62; /* link j6: columns */
+    const rx90_real_t t65 = t49 * t49; /* link j6: motion */
     const rx90_real_t t66 = t50 * t50;
-    const rx90_real_t t67 = t2 * dq[0];
+    const rx90_real_t t67 = t2 * dq[0]; /* link j2: motion */
     const rx90_real_t t68 = t67 * t67;
     const rx90_real_t t69 = dq[1] * dq[1];
     const rx90_real_t t70 = RX90_C(-9.81) * t0;
-    const rx90_real_t t71 = t70 + RX90_C(0.45) * (t68 + t69);
-    const rx90_real_t t72 = t0 * dq[0];
+    const rx90_real_t t71 = t70 + RX90_C(0.45) * (t68 + t69); /* link j3: motion */
+    const rx90_real_t t72 = t0 * dq[0]; /* link j2: motion */
     const rx90_real_t t73 = t72 * t67;
-    const rx90_real_t t74 = ddq[1] + t73;
-    const rx90_real_t t75 = RX90_C(9.81) * t2;
-    const rx90_real_t t76 = t75 + RX90_C(0.45) * t74;
+    const rx90_real_t t74 = ddq[1] + t73; /* link j3: motion */
+    const rx90_real_t t75 = RX90_C(9.81) * t2; /* link j2: motion */
+    const rx90_real_t t76 = t75 + RX90_C(0.45) * t74; /* link j3: motion */
     const rx90_real_t t77 = t1 * t71 - t3 * t76;
-    const rx90_real_t t78 = t77 + RX90_C(-0.45) * t10;
-    const rx90_real_t t79 = t2 * ddq[0];
+    const rx90_real_t t78 = t77 + RX90_C(-0.45) * t10; /* link j4: motion */
+    const rx90_real_t t79 = t2 * ddq[0]; /* link j2: motion */
     const rx90_real_t t80 = dq[1] * t72;
     const rx90_real_t t81 = t79 - t80;
-    const rx90_real_t t82 = t80 - t81;
+    const rx90_real_t t82 = t80 - t81; /* link j3: motion */
     const rx90_real_t t83 = RX90_C(0.45) * t82;
-    const rx90_real_t t84 = t83 + RX90_C(0.45) * t16;
+    const rx90_real_t t84 = t83 + RX90_C(0.45) * t16; /* link j4: motion */
     const rx90_real_t t85 = t11 * t78 + t17 * t84;
-    const rx90_real_t t86 = t3 * t71 + t1 * t76;
+    const rx90_real_t t86 = t3 * t71 + t1 * t76; /* link j3: motion */
     const rx90_real_t t87 = t5 * t5;
     const rx90_real_t t88 = t13 * t13;
-    const rx90_real_t t89 = t87 + t88;
+    const rx90_real_t t89 = t87 + t88; /* link j4: motion */
     const rx90_real_t t90 = t86 + RX90_C(-0.45) * t89;
-    const rx90_real_t t91 = t25 * t85 + t24 * t90;
+    const rx90_real_t t91 = t25 * t85 + t24 * t90; /* link j5: motion */
     const rx90_real_t t92 = t25 * t90 - t24 * t85;
-    const rx90_real_t t93 = t11 * t84 - t17 * t78;
-    const rx90_real_t t94 = t30 * t92 + t47 * t93;
+    const rx90_real_t t93 = t11 * t84 - t17 * t78; /* link j4: motion */
+    const rx90_real_t t94 = t30 * t92 + t47 * t93; /* link j6: motion */
+    /* link j6: force and moment */
     const rx90_real_t t95 = (t65 - t66) * parameters[YZ6] + (t58 - t64 * parameters[XZ6])
         + (t91 * parameters[MY6] + t94 * parameters[MZ6]);
-    const rx90_real_t t96 = t51 + t52;
+    const rx90_real_t t96 = t51 + t52; /* link j6: columns */
+    /* link j6: force and moment */
     const rx90_real_t t97 = t55 * (parameters[ZZ6] - parameters[XX6]) + t56 * parameters[YY6]
         + t96 * parameters[XY6];
-    const rx90_real_t t98 = t62 + t63;
-    const rx90_real_t t99 = t54 * t54;
+    const rx90_real_t t98 = t62 + t63; /* link j6: columns */
+    const rx90_real_t t99 = t54 * t54; /* link j6: motion */
     const rx90_real_t t100 = t30 * t93 - t47 * t92;
+    /* link j6: force and moment */
     const rx90_real_t t101 = (t99 - t66) * parameters[XZ6] + (t97 - t98 * parameters[YZ6])
         + (t100 * parameters[MZ6] + t91 * parameters[MX6]);
-    const rx90_real_t t102 = t61 - t60;
+    const rx90_real_t t102 = t61 - t60; /* link j6: motion */
+    /* link j5: force and moment */
     const rx90_real_t t103 = t45 * parameters[XX5] - t44 * (parameters[YY5] - parameters[ZZ5])
         + t102 * parameters[XY5];
-    const rx90_real_t t104 = t23 + t28;
-    const rx90_real_t t105 = t27 * t27;
+    const rx90_real_t t104 = t23 + t28; /* link j6: motion */
+    const rx90_real_t t105 = t27 * t27; /* link j5: motion */
     const rx90_real_t t106 = t43 * t43;
+    /* link j5: force and moment */
     const rx90_real_t t107 = (t105 - t106) * parameters[YZ5] + (t103 + t104 * parameters[XZ5])
         + (t93 * parameters[MY5] - t91 * parameters[MZ5]);
-    const rx90_real_t t108 = t107 + (t47 * t95 + t30 * t101);
+    const rx90_real_t t108 = t107 + (t47 * t95 + t30 * t101); /* link j6: what it passes on */
+    /* link j6: force and moment */
     const rx90_real_t t109 = t63 * (parameters[XX6] - parameters[YY6]) + t62 * parameters[ZZ6]
         - t53 * parameters[YZ6];
     const rx90_real_t t110 = (t99 - t65) * parameters[XY6] + (t109 - t48 * parameters[XZ6])
         + (t100 * parameters[MY6] - t94 * parameters[MX6]);
+    /* link j5: force and moment */
     const rx90_real_t t111 = t60 * (parameters[XX5] - parameters[ZZ5]) + t61 * parameters[YY5]
         + t46 * parameters[XY5];
-    const rx90_real_t t112 = t26 * t26;
+    const rx90_real_t t112 = t26 * t26; /* link j5: motion */
+    /* link j5: force and moment */
     const rx90_real_t t113 = (t106 - t112) * parameters[XZ5] + (t111 + t29 * parameters[YZ5])
         + (t92 * parameters[MZ5] - t93 * parameters[MX5]);
-    const rx90_real_t t114 = t113 + t110;
-    const rx90_real_t t115 = t21 + t22;
+    const rx90_real_t t114 = t113 + t110; /* link j6: what it passes on */
+    const rx90_real_t t115 = t21 + t22; /* link j5: motion */
+    /* link j4: force and moment */
     const rx90_real_t t116 = t39 * (parameters[YY4] - parameters[ZZ4]) - t40 * parameters[XX4]
         - t115 * parameters[XY4];
-    const rx90_real_t t117 = t34 - t36;
-    const rx90_real_t t118 = t35 * t35;
+    const rx90_real_t t117 = t34 - t36; /* link j5: motion */
+    const rx90_real_t t118 = t35 * t35; /* link j4: motion */
     const rx90_real_t t119 = t20 * t20;
+    /* link j4: force and moment */
     const rx90_real_t t120 = (t118 - t119) * parameters[YZ4] + (t116 + t117 * parameters[XZ4])
         + (t90 * parameters[MY4] + t93 * parameters[MZ4]);
-    const rx90_real_t t121 = t120 + (t24 * t108 - t25 * t114);
+    const rx90_real_t t121 = t120 + (t24 * t108 - t25 * t114); /* link j5: what it passes on */
+    /* link j5: force and moment */
     const rx90_real_t t122 = t23 * parameters[ZZ5] - t28 * (parameters[XX5] - parameters[YY5])
         + t59 * parameters[YZ5];
     const rx90_real_t t123 = (t112 - t105) * parameters[XY5] + (t122 + t42 * parameters[XZ5])
         + (t91 * parameters[MX5] - t92 * parameters[MY5]);
-    const rx90_real_t t124 = t123 + (t47 * t101 - t30 * t95);
+    const rx90_real_t t124 = t123 + (t47 * t101 - t30 * t95); /* link j6: what it passes on */
+    /* link j4: force and moment */
     const rx90_real_t t125 = t21 * (parameters[ZZ4] - parameters[XX4]) + t22 * parameters[YY4]
         + t41 * parameters[XY4];
-    const rx90_real_t t126 = t19 * t19;
+    const rx90_real_t t126 = t19 * t19; /* link j4: motion */
+    /* link j4: force and moment */
     const rx90_real_t t127 = (t126 - t119) * parameters[XZ4] + (t125 - t37 * parameters[YZ4])
         + (t85 * parameters[MZ4] + t90 * parameters[MX4]);
-    const rx90_real_t t128 = t127 + t124;
+    const rx90_real_t t128 = t127 + t124; /* link j5: what it passes on */
+    /* link j6: force and moment */
     const rx90_real_t t129 = (t65 + t66) * parameters[MX6] + t98 * parameters[MY6] + t53 * parameters[MZ6];
     const rx90_real_t t130 = t100 * parameters[M6] + t129;
     const rx90_real_t t131 = (t99 + t66) * parameters[MY6] + t64 * parameters[MX6] - t48 * parameters[MZ6];
     const rx90_real_t t132 = t94 * parameters[M6] + t131;
+    /* link j5: force and moment */
     const rx90_real_t t133 = t59 * parameters[MZ5] - ((t105 + t106) * parameters[MX5]
         + t29 * parameters[MY5]);
+    /* link j6: what it passes on */
     const rx90_real_t t134 = t92 * parameters[M5] + t133 + (t30 * t132 - t47 * t130);
+    /* link j6: force and moment */
     const rx90_real_t t135 = (t99 + t65) * parameters[MZ6] - (t57 * parameters[MX6] - t96 * parameters[MY6]);
+    /* link j5: force and moment */
     const rx90_real_t t136 = (t112 + t106) * parameters[MY5] - t104 * parameters[MX5] + t42 * parameters[MZ5];
+    /* link j6: what it passes on */
     const rx90_real_t t137 = t136 - t91 * parameters[M5] + (t135 - t91 * parameters[M6]);
+    /* link j4: force and moment */
     const rx90_real_t t138 = (t118 + t119) * parameters[MX4] + t37 * parameters[MY4] + t18 * parameters[MZ4];
+    /* link j5: what it passes on */
     const rx90_real_t t139 = t24 * t134 + t25 * t137 - (t85 * parameters[M4] + t138);
+    /* link j5: force and moment */
     const rx90_real_t t140 = (t112 + t105) * parameters[MZ5] - (t46 * parameters[MY5]
         - t102 * parameters[MX5]);
+    /* link j6: what it passes on */
     const rx90_real_t t141 = t93 * parameters[M5] - t140 + (t30 * t130 + t47 * t132);
+    /* link j4: force and moment */
     const rx90_real_t t142 = (t126 + t119) * parameters[MY4] - t117 * parameters[MX4] + t38 * parameters[MZ4];
-    const rx90_real_t t143 = t93 * parameters[M4] + t142 + t141;
-    const rx90_real_t t144 = t17 * t139 - t11 * t143;
-    const rx90_real_t t145 = t33 - t32;
+    const rx90_real_t t143 = t93 * parameters[M4] + t142 + t141; /* link j5: what it passes on */
+    const rx90_real_t t144 = t17 * t139 - t11 * t143; /* link j4: what it passes on */
+    const rx90_real_t t145 = t33 - t32; /* link j4: motion */
+    /* link j3: force and moment */
     const rx90_real_t t146 = t15 * parameters[XX3] - t14 * (parameters[YY3] - parameters[ZZ3])
         + t145 * parameters[XY3];
-    const rx90_real_t t147 = t9 + t8;
-    const rx90_real_t t148 = t7 * t7;
+    const rx90_real_t t147 = t9 + t8; /* link j4: motion */
+    const rx90_real_t t148 = t7 * t7; /* link j3: motion */
+    /* link j3: force and moment */
     const rx90_real_t t149 = t83 * parameters[MY3] - t86 * parameters[MZ3] + ((t148 - t88) * parameters[YZ3]
         + (t146 + t147 * parameters[XZ3]));
+    /* link j4: what it passes on */
     const rx90_real_t t150 = t149 + (t11 * t121 + t17 * t128 + RX90_C(-0.45) * t144);
+    /* link j4: force and moment */
     const rx90_real_t t151 = t36 * (parameters[XX4] - parameters[YY4]) + t34 * parameters[ZZ4]
         - t18 * parameters[YZ4];
     const rx90_real_t t152 = (t126 - t118) * parameters[XY4] + (t151 + t38 * parameters[XZ4])
         + (t85 * parameters[MY4] - t93 * parameters[MX4]);
-    const rx90_real_t t153 = t152 + (t25 * t108 + t24 * t114);
+    const rx90_real_t t153 = t152 + (t25 * t108 + t24 * t114); /* link j5: what it passes on */
+    /* link j3: force and moment */
     const rx90_real_t t154 = t32 * (parameters[XX3] - parameters[ZZ3]) + t33 * parameters[YY3]
         + t16 * parameters[XY3];
     const rx90_real_t t155 = t77 * parameters[MZ3] + t83 * parameters[MX3] + ((t87 - t88) * parameters[XZ3]
         - (t154 - t10 * parameters[YZ3]));
-    const rx90_real_t t156 = t153 - t155;
-    const rx90_real_t t157 = dq[1] * t67;
+    const rx90_real_t t156 = t153 - t155; /* link j4: what it passes on */
+    const rx90_real_t t157 = dq[1] * t67; /* link j2: motion */
     const rx90_real_t t158 = t0 * ddq[0];
     const rx90_real_t t159 = t158 + t157;
+    /* link j2: force and moment */
     const rx90_real_t t160 = t157 * (parameters[ZZ2] - parameters[YY2]) + t159 * parameters[XX2]
         - t82 * parameters[XY2];
     const rx90_real_t t161 = (t68 - t69) * parameters[YZ2] + (t160 + t74 * parameters[XZ2])
         - t75 * parameters[MZ2];
+    /* link j3: force and moment */
     const rx90_real_t t162 = (t87 + t148) * parameters[MZ3] + (t145 * parameters[MX3]
         - t16 * parameters[MY3]);
+    /* link j3: what it passes on */
     const rx90_real_t t163 = t3 * t150 + t1 * t156 + RX90_C(0.45) * (t162 - t83 * parameters[M3] + t144);
+    /* link j2: force and moment */
     const rx90_real_t t164 = t80 * (parameters[XX2] - parameters[ZZ2]) + t81 * parameters[YY2] + (t157
         + t159) * parameters[XY2];
-    const rx90_real_t t165 = t72 * t72;
+    const rx90_real_t t165 = t72 * t72; /* link j2: motion */
+    /* link j2: force and moment */
     const rx90_real_t t166 = (t69 - t165) * parameters[XZ2] + (t164 + (ddq[1] - t73) * parameters[YZ2]);
+    /* link j2: what it passes on */
     const rx90_real_t t167 = t0 * (t161 + (t1 * t150 - t3 * t156)) + t2 * (t166 - t70 * parameters[MZ2]
         + t163);
-    const rx90_real_t t168 = rx90_sign(dq[0]);
+    const rx90_real_t t168 = rx90_sign(dq[0]); /* joint j1: coulomb_friction */
     const rx90_real_t t169 = RX90_C(1.0e2) * dq[0] * parameters[FV1] + t168 * parameters[FC1]
         + RX90_C(1.0e2) * ddq[0] * parameters[IA1];
     out[0] = RX90_C(3.3333333333333335) * t169 + RX90_C(0.03333333333333333) * (ddq[0] * parameters[ZZ1]
         + t167);
-    const rx90_real_t t170 = t11 * t139 + t17 * t143;
+    const rx90_real_t t170 = t11 * t139 + t17 * t143; /* link j4: what it passes on */
+    /* link j3: force and moment */
     const rx90_real_t t171 = t9 * parameters[ZZ3] - t8 * (parameters[XX3] - parameters[YY3])
         + t31 * parameters[YZ3];
     const rx90_real_t t172 = t86 * parameters[MX3] + t77 * parameters[MY3] + ((t87 - t148) * parameters[XY3]
         + (t171 + t12 * parameters[XZ3]));
+    /* link j4: what it passes on */
     const rx90_real_t t173 = t172 + (t11 * t128 - t17 * t121 + RX90_C(-0.45) * t170);
+    /* link j3: force and moment */
     const rx90_real_t t174 = t10 * parameters[MY3] - (t148 + t88) * parameters[MX3] + t31 * parameters[MZ3];
+    /* link j4: force and moment */
     const rx90_real_t t175 = t115 * parameters[MX4] - t41 * parameters[MY4] - (t126 + t118) * parameters[MZ4];
+    /* link j5: what it passes on */
     const rx90_real_t t176 = t90 * parameters[M4] + t175 + (t25 * t134 - t24 * t137);
+    /* link j3: force and moment */
     const rx90_real_t t177 = t86 * parameters[M3] + (t147 * parameters[MX3] - t89 * parameters[MY3]
         - t12 * parameters[MZ3]);
+    /* link j3: what it passes on */
     const rx90_real_t t178 = t3 * (t174 - t77 * parameters[M3] + t170) + t1 * (t177 + t176);
+    /* link j2: force and moment */
     const rx90_real_t t179 = t73 * (parameters[YY2] - parameters[XX2]) + ddq[1] * parameters[ZZ2]
         + t79 * parameters[YZ2];
     const rx90_real_t t180 = t75 * parameters[MX2] + t70 * parameters[MY2] + ((t165 - t68) * parameters[XY2]
         + (t179 + t158 * parameters[XZ2]));
-    const rx90_real_t t181 = rx90_sign(dq[1]);
+    const rx90_real_t t181 = rx90_sign(dq[1]); /* joint j2: coulomb_friction */
     const rx90_real_t t182 = RX90_C(1.0e2) * dq[1] * parameters[FV2] + t181 * parameters[FC2]
         + RX90_C(1.0e2) * ddq[1] * parameters[IA2];
     const rx90_real_t t183 = RX90_C(3.3333333333333335) * t182 + RX90_C(0.03333333333333333) * (t180 + (t173
         + RX90_C(0.45) * t178));
     out[1] = t183;
-    const rx90_real_t t184 = rx90_sign(dq[2]);
+    const rx90_real_t t184 = rx90_sign(dq[2]); /* joint j3: coulomb_friction */
     const rx90_real_t t185 = RX90_C(1.0e2) * dq[2] * parameters[FV3] + t184 * parameters[FC3]
         + RX90_C(1.0e2) * ddq[2] * parameters[IA3];
     out[2] = RX90_C(3.3333333333333335) * t185 + RX90_C(0.03333333333333333) * t173;
-    const rx90_real_t t186 = rx90_sign(dq[3]);
+    const rx90_real_t t186 = rx90_sign(dq[3]); /* joint j4: coulomb_friction */
     const rx90_real_t t187 = RX90_C(50.0) * dq[3] * parameters[FV4] + t186 * parameters[FC4]
         + RX90_C(50.0) * ddq[3] * parameters[IA4];
     out[3] = RX90_C(5.0) * t187 + RX90_C(0.1) * t153;
-    const rx90_real_t t188 = rx90_sign(dq[4]);
+    const rx90_real_t t188 = rx90_sign(dq[4]); /* joint j5: coulomb_friction */
     const rx90_real_t t189 = RX90_C(50.0) * dq[4] * parameters[FV5] + t188 * parameters[FC5]
         + RX90_C(50.0) * ddq[4] * parameters[IA5];
     out[4] = RX90_C(5.0) * t189 + RX90_C(0.1) * t124;
-    const rx90_real_t t190 = rx90_sign(dq[5]);
+    const rx90_real_t t190 = rx90_sign(dq[5]); /* joint j6: coulomb_friction */
     const rx90_real_t t191 = RX90_C(30.0) * dq[5] * parameters[FV6] + t190 * parameters[FC6]
         + RX90_C(30.0) * ddq[5] * parameters[IA6];
     out[5] = RX90_C(5.0) * t191 + RX90_C(0.16666666666666666) * t110;

@@ -22,15 +22,15 @@
  */
 #include "rx90_private.h"
 
-#if RX90_GENERATION != 0xD1F0D18FUL
+#if RX90_GENERATION != 0x88006983UL
 #error "rx90.h and rx90_jacobian.c are of different generations: generate the arm again"
 #endif
 
-int rx90_jacobian(
+rx90_status_t rx90_jacobian(
     const rx90_real_t q[RX90_N_JOINTS],
     rx90_real_t out[6 * RX90_N_JOINTS])
 {
-    int status = RX90_STATUS_OK;
+    rx90_status_t status = RX90_STATUS_OK;
 
     if (!rx90_within_joints(q, RX90_C(1.0e8))) {
         status |= RX90_STATUS_INPUT;
@@ -50,21 +50,21 @@ int rx90_jacobian(
     RX90_SINCOS(q[3], &t20, &t21);
     rx90_real_t t22, t23;
     RX90_SINCOS(q[4], &t22, &t23);
-    const rx90_real_t t2 = t0 * t1;
+    const rx90_real_t t2 = t0 * t1; /* link j2: pose */
     const rx90_real_t t5 = t0 * t4;
-    const rx90_real_t t7 = t3 * t2 + t6 * t5;
-    const rx90_real_t t8 = RX90_C(0.45) * t7;
+    const rx90_real_t t7 = t3 * t2 + t6 * t5; /* link j3: pose */
+    const rx90_real_t t8 = RX90_C(0.45) * t7; /* link j4: pose */
     const rx90_real_t t9 = RX90_C(-0.45) * t2 + t8;
     out[0] = t9;
-    const rx90_real_t t10 = t1 * t6 - t4 * t3;
-    const rx90_real_t t11 = RX90_C(-0.45) * t10;
+    const rx90_real_t t10 = t1 * t6 - t4 * t3; /* link j3: motion */
+    const rx90_real_t t11 = RX90_C(-0.45) * t10; /* link j4: pose */
     const rx90_real_t t12 = RX90_C(-0.45) * t4 + t11;
     out[1] = t13 * t12;
     out[2] = t13 * t11;
-    const rx90_real_t t14 = t13 * t1;
+    const rx90_real_t t14 = t13 * t1; /* link j2: pose */
     const rx90_real_t t15 = t13 * t4;
-    const rx90_real_t t16 = t3 * t14 + t6 * t15;
-    const rx90_real_t t17 = RX90_C(-0.45) * t16;
+    const rx90_real_t t16 = t3 * t14 + t6 * t15; /* link j3: pose */
+    const rx90_real_t t17 = RX90_C(-0.45) * t16; /* link j4: pose */
     const rx90_real_t t18 = RX90_C(0.45) * t14 + t17;
     out[6] = t18;
     out[7] = t0 * t12;
@@ -74,20 +74,20 @@ int rx90_jacobian(
     out[19] = t0;
     out[20] = t0;
     out[21] = -t16;
-    const rx90_real_t t19 = t6 * t14 - t3 * t15;
+    const rx90_real_t t19 = t6 * t14 - t3 * t15; /* link j3: pose */
     out[22] = t20 * t19 + t0 * t21;
-    const rx90_real_t t24 = t22 * (t0 * t20 - t21 * t19) - t23 * t16;
+    const rx90_real_t t24 = t22 * (t0 * t20 - t21 * t19) - t23 * t16; /* link j5: pose */
     out[23] = t24;
     out[25] = -t13;
     out[26] = -t13;
     out[27] = -t7;
-    const rx90_real_t t25 = t6 * t2 - t3 * t5;
+    const rx90_real_t t25 = t6 * t2 - t3 * t5; /* link j3: pose */
     out[28] = t20 * t25 - t13 * t21;
-    const rx90_real_t t26 = t22 * (t21 * t25 + t13 * t20) + t23 * t7;
+    const rx90_real_t t26 = t22 * (t21 * t25 + t13 * t20) + t23 * t7; /* link j5: pose */
     out[29] = -t26;
     out[30] = RX90_C(1.0);
     out[33] = t10;
-    const rx90_real_t t27 = t4 * t6 + t1 * t3;
+    const rx90_real_t t27 = t4 * t6 + t1 * t3; /* link j3: motion */
     out[34] = t20 * t27;
     out[35] = t23 * t10 - t22 * (t21 * t27);
     /* always zero */

@@ -26,11 +26,11 @@
  */
 #include "rx90_private.h"
 
-#if RX90_GENERATION != 0xD1F0D18FUL
+#if RX90_GENERATION != 0x88006983UL
 #error "rx90.h and rx90_joint_from_motor.c are of different generations: generate the arm again"
 #endif
 
-int rx90_joint_from_motor(
+rx90_status_t rx90_joint_from_motor(
     const rx90_real_t q_m[RX90_N_JOINTS],
     const rx90_real_t dq_m[RX90_N_JOINTS],
     const rx90_real_t ddq_m[RX90_N_JOINTS],
@@ -38,7 +38,7 @@ int rx90_joint_from_motor(
     rx90_real_t dq[RX90_N_JOINTS],
     rx90_real_t ddq[RX90_N_JOINTS])
 {
-    int status = RX90_STATUS_OK;
+    rx90_status_t status = RX90_STATUS_OK;
 
     if (!rx90_within_joints(q_m, RX90_C(1.0e18))
         || !rx90_within_joints(dq_m, RX90_C(1.0e18))

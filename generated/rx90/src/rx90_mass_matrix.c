@@ -78,11 +78,11 @@
  */
 #include "rx90_private.h"
 
-#if RX90_GENERATION != 0xD1F0D18FUL
+#if RX90_GENERATION != 0x88006983UL
 #error "rx90.h and rx90_mass_matrix.c are of different generations: generate the arm again"
 #endif
 
-int rx90_mass_matrix(
+rx90_status_t rx90_mass_matrix(
     const rx90_real_t q[RX90_N_JOINTS],
     const rx90_real_t parameters[RX90_N_PARAMETERS],
     rx90_real_t out[RX90_N_JOINTS * RX90_N_JOINTS])
@@ -90,7 +90,7 @@ int rx90_mass_matrix(
     enum { ZZ1R = 0, XX2R, XY2, XZ2R, YZ2, ZZ2R, MX2R, MY2, XX3R, XY3, XZ3, YZ3, ZZ3R, MX3, MY3R, XX4R, XY4,
         XZ4, YZ4, ZZ4R, MX4, MY4R, XX5R, XY5, XZ5, YZ5, ZZ5R, MX5, MY5R, XX6R, XY6, XZ6, YZ6, ZZ6, MX6, MY6,
         FV1, FC1, FV2, FC2, FV3, FC3, IA3, FV4, FC4, IA4, FV5, FC5, IA5, FV6, FC6, IA6 };
-    int status = RX90_STATUS_OK;
+    rx90_status_t status = RX90_STATUS_OK;
 
     if (!rx90_within_joints(q, RX90_C(1.0e8))
         || !RX90_PARAMETERS_USABLE(rx90_within(parameters, 52, RX90_C(1.0e18)))) {
@@ -111,67 +111,79 @@ int rx90_mass_matrix(
     RX90_SINCOS(q[4], &t8, &t5);
     rx90_real_t t1, t0;
     RX90_SINCOS(q[5], &t1, &t0);
+    /* link j6: inertia of it and all beyond */
     const rx90_real_t t2 = parameters[XY6] * (RX90_C(2.0) * t1) - t0 * parameters[XX6R];
     const rx90_real_t t3 = t0 * t2;
     const rx90_real_t t4 = parameters[XX5R] - t3;
+    /* link j6: column of the mass matrix */
     const rx90_real_t t6 = t0 * parameters[XZ6] - t1 * parameters[YZ6];
-    const rx90_real_t t7 = parameters[XY5] + t6;
+    const rx90_real_t t7 = parameters[XY5] + t6; /* link j6: inertia of it and all beyond */
+    /* link j5: inertia of it and all beyond */
     const rx90_real_t t9 = t5 * (parameters[ZZ6] - t4) + t7 * (RX90_C(2.0) * t8);
     const rx90_real_t t10 = t5 * t9;
     const rx90_real_t t11 = parameters[XX4R] + (parameters[ZZ6] - t10);
+    /* link j6: inertia of it and all beyond */
     const rx90_real_t t12 = parameters[ZZ5R] + (parameters[XX6R] + t3);
     const rx90_real_t t14 = parameters[XZ5] + (t1 * t2 - parameters[XY6]);
+    /* link j6: column of the mass matrix */
     const rx90_real_t t15 = t1 * parameters[XZ6] + t0 * parameters[YZ6];
-    const rx90_real_t t16 = parameters[YZ5] - t15;
-    const rx90_real_t t17 = t5 * t14 - t8 * t16;
-    const rx90_real_t t18 = t17 - parameters[XY4];
+    const rx90_real_t t16 = parameters[YZ5] - t15; /* link j6: inertia of it and all beyond */
+    const rx90_real_t t17 = t5 * t14 - t8 * t16; /* link j5: column of the mass matrix */
+    const rx90_real_t t18 = t17 - parameters[XY4]; /* link j5: inertia of it and all beyond */
+    /* link j4: inertia of it and all beyond */
     const rx90_real_t t20 = t13 * (t12 - t11) - t18 * (RX90_C(2.0) * t19);
     const rx90_real_t t21 = t13 * t20;
+    /* link j6: column of the mass matrix */
     const rx90_real_t t22 = t1 * parameters[MY6] - t0 * parameters[MX6];
-    const rx90_real_t t23 = parameters[MX5] - t22;
-    const rx90_real_t t24 = t5 * parameters[MY5R] + t8 * t23;
-    const rx90_real_t t25 = RX90_C(0.9) * t24;
+    const rx90_real_t t23 = parameters[MX5] - t22; /* link j6: inertia of it and all beyond */
+    const rx90_real_t t24 = t5 * parameters[MY5R] + t8 * t23; /* link j5: column of the mass matrix */
+    const rx90_real_t t25 = RX90_C(0.9) * t24; /* link j4: inertia of it and all beyond */
     const rx90_real_t t26 = parameters[XX3R] + (t12 - t21 + t25);
-    const rx90_real_t t27 = parameters[ZZ4R] + (t4 + t10);
+    const rx90_real_t t27 = parameters[ZZ4R] + (t4 + t10); /* link j5: inertia of it and all beyond */
     const rx90_real_t t29 = parameters[XZ4] + (t7 - t8 * t9);
-    const rx90_real_t t30 = t8 * t14 + t5 * t16;
-    const rx90_real_t t31 = t30 - parameters[YZ4];
+    const rx90_real_t t30 = t8 * t14 + t5 * t16; /* link j5: column of the mass matrix */
+    const rx90_real_t t31 = t30 - parameters[YZ4]; /* link j5: inertia of it and all beyond */
+    /* link j6: column of the mass matrix */
     const rx90_real_t t32 = t0 * parameters[MY6] + t1 * parameters[MX6];
-    const rx90_real_t t33 = parameters[MY4R] + t32;
-    const rx90_real_t t34 = t5 * t23 - t8 * parameters[MY5R];
-    const rx90_real_t t35 = parameters[MX4] + t34;
-    const rx90_real_t t36 = t19 * t33 - t13 * t35;
+    const rx90_real_t t33 = parameters[MY4R] + t32; /* link j5: inertia of it and all beyond */
+    const rx90_real_t t34 = t5 * t23 - t8 * parameters[MY5R]; /* link j5: column of the mass matrix */
+    const rx90_real_t t35 = parameters[MX4] + t34; /* link j5: inertia of it and all beyond */
+    const rx90_real_t t36 = t19 * t33 - t13 * t35; /* link j4: column of the mass matrix */
     const rx90_real_t t37 = RX90_C(0.45) * t36;
     const rx90_real_t t38 = t13 * t29 + t19 * t31 + t37;
-    const rx90_real_t t39 = parameters[XY3] + t38;
+    const rx90_real_t t39 = parameters[XY3] + t38; /* link j4: inertia of it and all beyond */
+    /* link j3: inertia of it and all beyond */
     const rx90_real_t t41 = t28 * (t27 - t26) + t39 * (RX90_C(2.0) * t40);
     const rx90_real_t t42 = t28 * t41;
-    const rx90_real_t t43 = parameters[MX3] - t36;
+    const rx90_real_t t43 = parameters[MX3] - t36; /* link j4: inertia of it and all beyond */
     const rx90_real_t t44 = parameters[MY3R] + t24;
-    const rx90_real_t t45 = t28 * t43 - t40 * t44;
-    const rx90_real_t t46 = RX90_C(0.9) * t45;
+    const rx90_real_t t45 = t28 * t43 - t40 * t44; /* link j3: column of the mass matrix */
+    const rx90_real_t t46 = RX90_C(0.9) * t45; /* link j3: inertia of it and all beyond */
     const rx90_real_t t47 = parameters[XX2R] + (t27 - t42);
     const rx90_real_t t49 = t39 - t40 * t41 + RX90_C(-0.45) * (t28 * t44 + t40 * t43);
+    /* link j2: inertia of it and all beyond */
     const rx90_real_t t51 = t48 * (t26 + t42 + t46 - t47) + (parameters[XY2] + t49) * (RX90_C(2.0) * t50);
     out[0] = parameters[ZZ1R] + (t47 + t48 * t51);
-    const rx90_real_t t52 = parameters[XZ3] + (t18 + t19 * t20);
-    const rx90_real_t t53 = t13 * t33 + t19 * t35;
+    const rx90_real_t t52 = parameters[XZ3] + (t18 + t19 * t20); /* link j4: inertia of it and all beyond */
+    const rx90_real_t t53 = t13 * t33 + t19 * t35; /* link j4: column of the mass matrix */
     const rx90_real_t t54 = RX90_C(0.45) * t53;
     const rx90_real_t t55 = t13 * t31 - t19 * t29 + t54;
-    const rx90_real_t t56 = parameters[YZ3] + t55;
-    const rx90_real_t t57 = t28 * t52 - t40 * t56;
+    const rx90_real_t t56 = parameters[YZ3] + t55; /* link j4: inertia of it and all beyond */
+    const rx90_real_t t57 = t28 * t52 - t40 * t56; /* link j3: column of the mass matrix */
     const rx90_real_t t58 = t40 * t52 + t28 * t56;
+    /* link j2: column of the mass matrix */
     const rx90_real_t t59 = t50 * (parameters[XZ2R] + (t54 + t57)) + t48 * (parameters[YZ2] + t58);
     out[1] = t59;
-    const rx90_real_t t60 = t50 * t57 + t48 * t58;
+    const rx90_real_t t60 = t50 * t57 + t48 * t58; /* link j3: column of the mass matrix */
     out[2] = t60;
+    /* link j4: column of the mass matrix */
     const rx90_real_t t61 = t50 * (t28 * t38 - t40 * t27) + t48 * (t40 * t38 + t28 * t27 - t37);
     out[3] = t61;
-    const rx90_real_t t62 = RX90_C(0.45) * (t19 * t24);
+    const rx90_real_t t62 = RX90_C(0.45) * (t19 * t24); /* link j5: column of the mass matrix */
     const rx90_real_t t63 = t13 * t17 + t19 * t12 + t62;
     const rx90_real_t t64 = t50 * (t28 * t63 - t40 * t30) + t48 * (t40 * t63 + t28 * t30 - t62);
     out[4] = t64;
-    const rx90_real_t t65 = t5 * t6 - t8 * parameters[ZZ6];
+    const rx90_real_t t65 = t5 * t6 - t8 * parameters[ZZ6]; /* link j6: column of the mass matrix */
     const rx90_real_t t66 = t5 * t32;
     const rx90_real_t t67 = RX90_C(0.45) * (t19 * t66 + t13 * t22);
     const rx90_real_t t68 = t13 * t65 - t19 * t15 + t67;
@@ -179,17 +191,17 @@ int rx90_mass_matrix(
     const rx90_real_t t70 = t50 * (t28 * t68 - t40 * t69) + t48 * (t40 * t68 + t28 * t69 - t67);
     out[5] = t70;
     out[6] = t59;
-    const rx90_real_t t71 = parameters[ZZ3R] + (t11 + t21 + t25);
+    const rx90_real_t t71 = parameters[ZZ3R] + (t11 + t21 + t25); /* link j4: inertia of it and all beyond */
     out[7] = parameters[ZZ2R] + (t71 + t46);
-    const rx90_real_t t72 = t71 + RX90_C(0.45) * t45;
+    const rx90_real_t t72 = t71 + RX90_C(0.45) * t45; /* link j3: column of the mass matrix */
     out[8] = t72;
-    const rx90_real_t t73 = t55 + RX90_C(-0.45) * (t40 * t53);
+    const rx90_real_t t73 = t55 + RX90_C(-0.45) * (t40 * t53); /* link j4: column of the mass matrix */
     out[9] = t73;
-    const rx90_real_t t74 = t13 * t24;
+    const rx90_real_t t74 = t13 * t24; /* link j5: column of the mass matrix */
     const rx90_real_t t75 = t13 * t12 - t19 * t17 + RX90_C(0.45) * t74;
     const rx90_real_t t76 = t75 + RX90_C(0.45) * (t28 * t34 - t40 * t74);
     out[10] = t76;
-    const rx90_real_t t77 = t13 * t66 - t19 * t22;
+    const rx90_real_t t77 = t13 * t66 - t19 * t22; /* link j6: column of the mass matrix */
     const rx90_real_t t78 = RX90_C(0.45) * t77 - (t19 * t65 + t13 * t15);
     const rx90_real_t t79 = t78 + RX90_C(-0.45) * (t40 * t77 + t28 * (t8 * t32));
     out[11] = t79;

@@ -104,11 +104,11 @@
  */
 #include "rx90_private.h"
 
-#if RX90_GENERATION != 0xD1F0D18FUL
+#if RX90_GENERATION != 0x88006983UL
 #error "rx90.h and rx90_mass_matrix_standard.c are of different generations: generate the arm again"
 #endif
 
-int rx90_mass_matrix_standard(
+rx90_status_t rx90_mass_matrix_standard(
     const rx90_real_t q[RX90_N_JOINTS],
     const rx90_real_t parameters[RX90_N_STANDARD_PARAMETERS],
     rx90_real_t out[RX90_N_JOINTS * RX90_N_JOINTS])
@@ -117,7 +117,7 @@ int rx90_mass_matrix_standard(
         M2, XX3, XY3, XZ3, YY3, YZ3, ZZ3, MX3, MY3, MZ3, M3, XX4, XY4, XZ4, YY4, YZ4, ZZ4, MX4, MY4, MZ4, M4,
         XX5, XY5, XZ5, YY5, YZ5, ZZ5, MX5, MY5, MZ5, M5, XX6, XY6, XZ6, YY6, YZ6, ZZ6, MX6, MY6, MZ6, M6, FV1,
         FC1, IA1, FV2, FC2, IA2, FV3, FC3, IA3, FV4, FC4, IA4, FV5, FC5, IA5, FV6, FC6, IA6 };
-    int status = RX90_STATUS_OK;
+    rx90_status_t status = RX90_STATUS_OK;
 
     if (!rx90_within_joints(q, RX90_C(1.0e8))
         || !RX90_PARAMETERS_USABLE(rx90_within(parameters, 78, RX90_C(1.0e18)))) {
@@ -138,75 +138,90 @@ int rx90_mass_matrix_standard(
     RX90_SINCOS(q[4], &t9, &t6);
     rx90_real_t t1, t0;
     RX90_SINCOS(q[5], &t1, &t0);
+    /* link j6: inertia of it and all beyond */
     const rx90_real_t t2 = t0 * (parameters[YY6] - parameters[XX6]) + parameters[XY6] * (RX90_C(2.0) * t1);
     const rx90_real_t t3 = t0 * t2;
     const rx90_real_t t4 = parameters[XX5] + (parameters[YY6] - t3);
     const rx90_real_t t5 = parameters[YY5] + parameters[ZZ6];
+    /* link j6: column of the mass matrix */
     const rx90_real_t t7 = t0 * parameters[XZ6] - t1 * parameters[YZ6];
-    const rx90_real_t t8 = parameters[XY5] + t7;
+    const rx90_real_t t8 = parameters[XY5] + t7; /* link j6: inertia of it and all beyond */
+    /* link j5: inertia of it and all beyond */
     const rx90_real_t t10 = t6 * (t5 - t4) + t8 * (RX90_C(2.0) * t9);
     const rx90_real_t t11 = t6 * t10;
     const rx90_real_t t12 = parameters[XX4] + (t5 - t11);
+    /* link j6: inertia of it and all beyond */
     const rx90_real_t t13 = parameters[ZZ5] + (parameters[XX6] + t3);
-    const rx90_real_t t14 = parameters[YY4] + t13;
+    const rx90_real_t t14 = parameters[YY4] + t13; /* link j5: inertia of it and all beyond */
+    /* link j6: inertia of it and all beyond */
     const rx90_real_t t16 = parameters[XZ5] + (t1 * t2 - parameters[XY6]);
+    /* link j6: column of the mass matrix */
     const rx90_real_t t17 = t1 * parameters[XZ6] + t0 * parameters[YZ6];
-    const rx90_real_t t18 = parameters[YZ5] - t17;
-    const rx90_real_t t19 = t6 * t16 - t9 * t18;
-    const rx90_real_t t20 = t19 - parameters[XY4];
+    const rx90_real_t t18 = parameters[YZ5] - t17; /* link j6: inertia of it and all beyond */
+    const rx90_real_t t19 = t6 * t16 - t9 * t18; /* link j5: column of the mass matrix */
+    const rx90_real_t t20 = t19 - parameters[XY4]; /* link j5: inertia of it and all beyond */
+    /* link j4: inertia of it and all beyond */
     const rx90_real_t t22 = t15 * (t14 - t12) - t20 * (RX90_C(2.0) * t21);
     const rx90_real_t t23 = t15 * t22;
+    /* link j6: column of the mass matrix */
     const rx90_real_t t24 = t1 * parameters[MY6] - t0 * parameters[MX6];
-    const rx90_real_t t25 = parameters[MX5] - t24;
+    const rx90_real_t t25 = parameters[MX5] - t24; /* link j6: inertia of it and all beyond */
     const rx90_real_t t26 = parameters[MY5] + parameters[MZ6];
-    const rx90_real_t t27 = t6 * t26 + t9 * t25;
-    const rx90_real_t t28 = parameters[MZ4] + t27;
+    const rx90_real_t t27 = t6 * t26 + t9 * t25; /* link j5: column of the mass matrix */
+    const rx90_real_t t28 = parameters[MZ4] + t27; /* link j5: inertia of it and all beyond */
     const rx90_real_t t29 = parameters[M4] + (parameters[M5] + parameters[M6]);
-    const rx90_real_t t30 = RX90_C(0.45) * t29;
+    const rx90_real_t t30 = RX90_C(0.45) * t29; /* link j4: inertia of it and all beyond */
     const rx90_real_t t31 = RX90_C(0.45) * (t30 + RX90_C(2.0) * t28);
     const rx90_real_t t32 = parameters[XX3] + (t14 - t23 + t31);
-    const rx90_real_t t33 = parameters[ZZ4] + (t4 + t11);
-    const rx90_real_t t34 = parameters[YY3] + t33;
-    const rx90_real_t t36 = parameters[XZ4] + (t8 - t9 * t10);
-    const rx90_real_t t37 = t9 * t16 + t6 * t18;
-    const rx90_real_t t38 = t37 - parameters[YZ4];
+    const rx90_real_t t33 = parameters[ZZ4] + (t4 + t11); /* link j5: inertia of it and all beyond */
+    const rx90_real_t t34 = parameters[YY3] + t33; /* link j4: inertia of it and all beyond */
+    const rx90_real_t t36 = parameters[XZ4] + (t8 - t9 * t10); /* link j5: inertia of it and all beyond */
+    const rx90_real_t t37 = t9 * t16 + t6 * t18; /* link j5: column of the mass matrix */
+    const rx90_real_t t38 = t37 - parameters[YZ4]; /* link j5: inertia of it and all beyond */
+    /* link j6: column of the mass matrix */
     const rx90_real_t t39 = t0 * parameters[MY6] + t1 * parameters[MX6];
+    /* link j5: inertia of it and all beyond */
     const rx90_real_t t40 = parameters[MY4] + (t39 - parameters[MZ5]);
-    const rx90_real_t t41 = t6 * t25 - t9 * t26;
-    const rx90_real_t t42 = parameters[MX4] + t41;
-    const rx90_real_t t43 = t21 * t40 - t15 * t42;
+    const rx90_real_t t41 = t6 * t25 - t9 * t26; /* link j5: column of the mass matrix */
+    const rx90_real_t t42 = parameters[MX4] + t41; /* link j5: inertia of it and all beyond */
+    const rx90_real_t t43 = t21 * t40 - t15 * t42; /* link j4: column of the mass matrix */
     const rx90_real_t t44 = RX90_C(0.45) * t43;
     const rx90_real_t t45 = t15 * t36 + t21 * t38 + t44;
-    const rx90_real_t t46 = parameters[XY3] + t45;
+    const rx90_real_t t46 = parameters[XY3] + t45; /* link j4: inertia of it and all beyond */
+    /* link j3: inertia of it and all beyond */
     const rx90_real_t t48 = t35 * (t32 - t34) - t46 * (RX90_C(2.0) * t47);
     const rx90_real_t t49 = t35 * t48;
     const rx90_real_t t50 = parameters[XX2] + (t34 + t49);
-    const rx90_real_t t51 = parameters[MX3] - t43;
+    const rx90_real_t t51 = parameters[MX3] - t43; /* link j4: inertia of it and all beyond */
     const rx90_real_t t52 = parameters[MY3] + (t28 + t30);
-    const rx90_real_t t53 = t35 * t51 - t47 * t52;
+    const rx90_real_t t53 = t35 * t51 - t47 * t52; /* link j3: column of the mass matrix */
+    /* link j3: inertia of it and all beyond */
     const rx90_real_t t54 = RX90_C(0.45) * (RX90_C(0.45) * (parameters[M3] + t29) + RX90_C(2.0) * t53);
     const rx90_real_t t56 = t46 + t47 * t48 + RX90_C(-0.45) * (t35 * t52 + t47 * t51);
+    /* link j2: inertia of it and all beyond */
     const rx90_real_t t58 = t55 * (parameters[YY2] + (t32 - t49 + t54) - t50) + (parameters[XY2]
         + t56) * (RX90_C(2.0) * t57);
     out[0] = parameters[ZZ1] + (t50 + t55 * t58) + RX90_C(1.0e4) * parameters[IA1];
-    const rx90_real_t t59 = parameters[XZ3] + (t20 + t21 * t22);
-    const rx90_real_t t60 = t15 * t40 + t21 * t42;
+    const rx90_real_t t59 = parameters[XZ3] + (t20 + t21 * t22); /* link j4: inertia of it and all beyond */
+    const rx90_real_t t60 = t15 * t40 + t21 * t42; /* link j4: column of the mass matrix */
     const rx90_real_t t61 = t15 * t38 - t21 * t36 + RX90_C(0.45) * t60;
-    const rx90_real_t t62 = parameters[YZ3] + t61;
-    const rx90_real_t t63 = t35 * t59 - t47 * t62;
+    const rx90_real_t t62 = parameters[YZ3] + t61; /* link j4: inertia of it and all beyond */
+    const rx90_real_t t63 = t35 * t59 - t47 * t62; /* link j3: column of the mass matrix */
     const rx90_real_t t64 = t47 * t59 + t35 * t62;
+    /* link j2: column of the mass matrix */
     const rx90_real_t t65 = t57 * (parameters[XZ2] + (t63 + RX90_C(0.45) * (t60 - parameters[MZ3])))
         + t55 * (parameters[YZ2] + t64);
     out[1] = t65;
-    const rx90_real_t t66 = t57 * t63 + t55 * t64;
+    const rx90_real_t t66 = t57 * t63 + t55 * t64; /* link j3: column of the mass matrix */
     out[2] = t66;
+    /* link j4: column of the mass matrix */
     const rx90_real_t t67 = t57 * (t35 * t45 - t47 * t33) + t55 * (t47 * t45 + t35 * t33 - t44);
     out[3] = t67;
-    const rx90_real_t t68 = RX90_C(0.45) * (t21 * t27);
+    const rx90_real_t t68 = RX90_C(0.45) * (t21 * t27); /* link j5: column of the mass matrix */
     const rx90_real_t t69 = t15 * t19 + t21 * t13 + t68;
     const rx90_real_t t70 = t57 * (t35 * t69 - t47 * t37) + t55 * (t47 * t69 + t35 * t37 - t68);
     out[4] = t70;
-    const rx90_real_t t71 = t6 * t7 - t9 * parameters[ZZ6];
+    const rx90_real_t t71 = t6 * t7 - t9 * parameters[ZZ6]; /* link j6: column of the mass matrix */
     const rx90_real_t t72 = t6 * t39;
     const rx90_real_t t73 = RX90_C(0.45) * (t21 * t72 + t15 * t24);
     const rx90_real_t t74 = t15 * t71 - t21 * t17 + t73;
@@ -214,17 +229,17 @@ int rx90_mass_matrix_standard(
     const rx90_real_t t76 = t57 * (t35 * t74 - t47 * t75) + t55 * (t47 * t74 + t35 * t75 - t73);
     out[5] = t76;
     out[6] = t65;
-    const rx90_real_t t77 = parameters[ZZ3] + (t12 + t23 + t31);
+    const rx90_real_t t77 = parameters[ZZ3] + (t12 + t23 + t31); /* link j4: inertia of it and all beyond */
     out[7] = parameters[ZZ2] + (t77 + t54) + RX90_C(1.0e4) * parameters[IA2];
-    const rx90_real_t t78 = t77 + RX90_C(0.45) * t53;
+    const rx90_real_t t78 = t77 + RX90_C(0.45) * t53; /* link j3: column of the mass matrix */
     out[8] = t78;
-    const rx90_real_t t79 = t61 + RX90_C(-0.45) * (t47 * t60);
+    const rx90_real_t t79 = t61 + RX90_C(-0.45) * (t47 * t60); /* link j4: column of the mass matrix */
     out[9] = t79;
-    const rx90_real_t t80 = t15 * t27;
+    const rx90_real_t t80 = t15 * t27; /* link j5: column of the mass matrix */
     const rx90_real_t t81 = t15 * t13 - t21 * t19 + RX90_C(0.45) * t80;
     const rx90_real_t t82 = t81 + RX90_C(0.45) * (t35 * t41 - t47 * t80);
     out[10] = t82;
-    const rx90_real_t t83 = t15 * t72 - t21 * t24;
+    const rx90_real_t t83 = t15 * t72 - t21 * t24; /* link j6: column of the mass matrix */
     const rx90_real_t t84 = RX90_C(0.45) * t83 - (t21 * t71 + t15 * t17);
     const rx90_real_t t85 = t84 + RX90_C(-0.45) * (t47 * t83 + t35 * (t9 * t39));
     out[11] = t85;

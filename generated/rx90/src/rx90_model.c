@@ -8,7 +8,7 @@
  */
 #include "rx90_private.h"
 
-#if RX90_GENERATION != 0xD1F0D18FUL
+#if RX90_GENERATION != 0x88006983UL
 #error "rx90.h and rx90_model.c are of different generations: generate the arm again"
 #endif
 

@@ -26,11 +26,11 @@
  */
 #include "rx90_private.h"
 
-#if RX90_GENERATION != 0xD1F0D18FUL
+#if RX90_GENERATION != 0x88006983UL
 #error "rx90.h and rx90_motor_from_joint.c are of different generations: generate the arm again"
 #endif
 
-int rx90_motor_from_joint(
+rx90_status_t rx90_motor_from_joint(
     const rx90_real_t q[RX90_N_JOINTS],
     const rx90_real_t dq[RX90_N_JOINTS],
     const rx90_real_t ddq[RX90_N_JOINTS],
@@ -38,7 +38,7 @@ int rx90_motor_from_joint(
     rx90_real_t dq_m[RX90_N_JOINTS],
     rx90_real_t ddq_m[RX90_N_JOINTS])
 {
-    int status = RX90_STATUS_OK;
+    rx90_status_t status = RX90_STATUS_OK;
 
     if (!rx90_within_joints(q, RX90_C(1.0e8))
         || !rx90_within_joints(dq, RX90_C(1.0e10))

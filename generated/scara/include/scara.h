@@ -12,7 +12,8 @@
  *
  * Every function returns SCARA_STATUS_OK, or the sum of the SCARA_STATUS_ bits that apply; all of
  * its outputs are then zero. Inputs are checked by their Euclidean norm, so one that is not finite is
- * found too (not with -ffast-math). Outputs may not overlap inputs. Matrices are row-major.
+ * found too (not with -ffast-math). Outputs may not overlap inputs. Matrices are row-major. In the sources a
+ * remark behind a value says which link or joint it belongs to, and those after it up to the next remark.
  *
  * Coordinates:
  *
@@ -53,7 +54,7 @@
 #define SCARA_H
 
 /** Number of this generation: header and sources of different ones do not compile together. */
-#define SCARA_GENERATION 0x5A40077AUL
+#define SCARA_GENERATION 0xC2234E4EUL
 
 /** SHA-256 of the description that this is the model of, then after a blank the description's version, if any. */
 #define SCARA_MODEL "c1d518ff4a0020fbd2ee0fb14fc12a05e9368b5ecb740059a83582da6419b7fa"
@@ -86,6 +87,7 @@
 #define scara_mass_matrix scara_mass_matrix_float
 #define scara_forward_dynamics scara_forward_dynamics_float
 #define scara_energy scara_energy_float
+#define scara_joint_effort scara_joint_effort_float
 #define scara_regressor scara_regressor_float
 #define scara_regressor_standard scara_regressor_standard_float
 #define scara_regressor_packed scara_regressor_packed_float
@@ -96,6 +98,7 @@
 #define scara_mass_matrix_standard scara_mass_matrix_standard_float
 #define scara_forward_dynamics_standard scara_forward_dynamics_standard_float
 #define scara_energy_standard scara_energy_standard_float
+#define scara_joint_effort_standard scara_joint_effort_standard_float
 #define scara_forward_kinematics scara_forward_kinematics_float
 #define scara_jacobian scara_jacobian_float
 #define scara_motor_from_joint scara_motor_from_joint_float
@@ -105,6 +108,8 @@
 #define scara_forward_dynamics_derivatives scara_forward_dynamics_derivatives_float
 #define scara_inverse_dynamics_derivatives_standard scara_inverse_dynamics_derivatives_standard_float
 #define scara_forward_dynamics_derivatives_standard scara_forward_dynamics_derivatives_standard_float
+#define scara_momentum_observer_step scara_momentum_observer_step_float
+#define scara_momentum_observer_step_standard scara_momentum_observer_step_standard_float
 #define scara_check_parameters scara_check_parameters_float
 #define scara_check_parameters_standard scara_check_parameters_standard_float
 #define scara_model scara_model_float
@@ -124,11 +129,15 @@ typedef SCARA_REAL scara_real_t;
 #define SCARA_N_PARAMETERS           19  /**< base parameters */
 #define SCARA_N_STANDARD_PARAMETERS  52  /**< standard parameters */
 #define SCARA_N_PACKED               30  /**< structural non-zeros of the regressor */
+#define SCARA_N_OBSERVER_STATES      4   /**< state of the observer: the momentum that the model expects */
 
-#define SCARA_STATUS_OK     0
-#define SCARA_STATUS_STROKE 1 /**< a lever would leave its stroke */
-#define SCARA_STATUS_PIVOT  2 /**< a pivot of the mass matrix vanishes, or the result is beyond 1e15 */
-#define SCARA_STATUS_INPUT  4 /**< an input is not finite or beyond its bound */
+/** SCARA_STATUS_OK or bits of the others. */
+typedef unsigned int scara_status_t;
+
+#define SCARA_STATUS_OK     0U
+#define SCARA_STATUS_STROKE 1U /**< a lever would leave its stroke */
+#define SCARA_STATUS_PIVOT  2U /**< a pivot of the mass matrix vanishes, or the result is beyond 1e15 */
+#define SCARA_STATUS_INPUT  4U /**< an input is not finite or beyond its bound */
 
 /** Indices of the base parameters. */
 enum {
@@ -227,7 +236,7 @@ const char *scara_model(void);
  *
  * @return SCARA_STATUS_OK or SCARA_STATUS_INPUT
  */
-int scara_check_parameters(const scara_real_t parameters[SCARA_N_PARAMETERS]);
+scara_status_t scara_check_parameters(const scara_real_t parameters[SCARA_N_PARAMETERS]);
 
 /**
  * Whether standard parameters can be used: finite, and their norm within its bound. Every function that takes them checks
@@ -235,7 +244,7 @@ int scara_check_parameters(const scara_real_t parameters[SCARA_N_PARAMETERS]);
  *
  * @return SCARA_STATUS_OK or SCARA_STATUS_INPUT
  */
-int scara_check_parameters_standard(const scara_real_t parameters[SCARA_N_STANDARD_PARAMETERS]);
+scara_status_t scara_check_parameters_standard(const scara_real_t parameters[SCARA_N_STANDARD_PARAMETERS]);
 
 /**
  * Inputs that give the accelerations ddq in the state q, dq; base parameters.
@@ -248,9 +257,9 @@ int scara_check_parameters_standard(const scara_real_t parameters[SCARA_N_STANDA
  *                                                                    undriven
  * @return SCARA_STATUS_OK or status bits
  *
- * Operations: 108 (67 mul, 41 add, 0 neg), 4 trig, 4 other.
+ * Operations: 108 (67 mul, 41 add, 0 neg), 4 trig, 4 other calls (sign, select and the like).
  */
-int scara_inverse_dynamics(
+scara_status_t scara_inverse_dynamics(
     const scara_real_t q[SCARA_N_JOINTS],
     const scara_real_t dq[SCARA_N_JOINTS],
     const scara_real_t ddq[SCARA_N_JOINTS],
@@ -267,7 +276,7 @@ int scara_inverse_dynamics(
  *
  * Operations: 1 (1 mul, 0 add, 0 neg).
  */
-int scara_gravity(
+scara_status_t scara_gravity(
     const scara_real_t q[SCARA_N_JOINTS],
     const scara_real_t parameters[SCARA_N_PARAMETERS],
     scara_real_t out[SCARA_N_JOINTS]);
@@ -281,9 +290,9 @@ int scara_gravity(
  * @param[out]  out         [4]   [A]                         inputs: motor currents, efforts where undriven
  * @return SCARA_STATUS_OK or status bits
  *
- * Operations: 74 (49 mul, 25 add, 0 neg), 4 trig, 4 other.
+ * Operations: 74 (49 mul, 25 add, 0 neg), 4 trig, 4 other calls (sign, select and the like).
  */
-int scara_bias(
+scara_status_t scara_bias(
     const scara_real_t q[SCARA_N_JOINTS],
     const scara_real_t dq[SCARA_N_JOINTS],
     const scara_real_t parameters[SCARA_N_PARAMETERS],
@@ -299,7 +308,7 @@ int scara_bias(
  *
  * Operations: 39 (20 mul, 19 add, 0 neg), 4 trig.
  */
-int scara_mass_matrix(
+scara_status_t scara_mass_matrix(
     const scara_real_t q[SCARA_N_JOINTS],
     const scara_real_t parameters[SCARA_N_PARAMETERS],
     scara_real_t out[SCARA_N_JOINTS * SCARA_N_JOINTS]);
@@ -315,9 +324,9 @@ int scara_mass_matrix(
  * @param[out]  out         [4]   [rad/s^2, rad/s^2, m/s^2, rad/s^2]  joint accelerations
  * @return SCARA_STATUS_OK or status bits
  *
- * Operations: 149 (89 mul, 60 add, 0 neg), 4 div, 4 trig, 4 other.
+ * Operations: 149 (89 mul, 60 add, 0 neg), 4 div, 4 trig, 4 other calls (sign, select and the like).
  */
-int scara_forward_dynamics(
+scara_status_t scara_forward_dynamics(
     const scara_real_t q[SCARA_N_JOINTS],
     const scara_real_t dq[SCARA_N_JOINTS],
     const scara_real_t input[SCARA_N_JOINTS],
@@ -336,12 +345,32 @@ int scara_forward_dynamics(
  *
  * Operations: 61 (43 mul, 18 add, 0 neg), 4 trig.
  */
-int scara_energy(
+scara_status_t scara_energy(
     const scara_real_t q[SCARA_N_JOINTS],
     const scara_real_t dq[SCARA_N_JOINTS],
     const scara_real_t parameters[SCARA_N_PARAMETERS],
     scara_real_t kinetic[1],
     scara_real_t potential[1]);
+
+/**
+ * Efforts of the drives at the joints that give the accelerations ddq in the state q, dq; base
+ * parameters.
+ *
+ * @param[in]   q           [4]   [rad, rad, m, rad]                  joint coordinates; norm at most 10000
+ * @param[in]   dq          [4]   [rad/s, rad/s, m/s, rad/s]          joint velocities; norm at most 100000
+ * @param[in]   ddq         [4]   [rad/s^2, rad/s^2, m/s^2, rad/s^2]  joint accelerations; norm at most 1e+08
+ * @param[in]   parameters  [19]                                      base parameters; norm at most 1e+09
+ * @param[out]  out         [4]   [N m, N m, N, N m]                  efforts at the joints
+ * @return SCARA_STATUS_OK or status bits
+ *
+ * Operations: 104 (63 mul, 41 add, 0 neg), 4 trig, 4 other calls (sign, select and the like).
+ */
+scara_status_t scara_joint_effort(
+    const scara_real_t q[SCARA_N_JOINTS],
+    const scara_real_t dq[SCARA_N_JOINTS],
+    const scara_real_t ddq[SCARA_N_JOINTS],
+    const scara_real_t parameters[SCARA_N_PARAMETERS],
+    scara_real_t out[SCARA_N_JOINTS]);
 
 /**
  * Inputs per unit of each base parameter.
@@ -353,9 +382,9 @@ int scara_energy(
  *                                                             row-major
  * @return SCARA_STATUS_OK or status bits
  *
- * Operations: 87 (62 mul, 25 add, 0 neg), 4 trig, 4 other.
+ * Operations: 87 (62 mul, 25 add, 0 neg), 4 trig, 4 other calls (sign, select and the like).
  */
-int scara_regressor(
+scara_status_t scara_regressor(
     const scara_real_t q[SCARA_N_JOINTS],
     const scara_real_t dq[SCARA_N_JOINTS],
     const scara_real_t ddq[SCARA_N_JOINTS],
@@ -371,9 +400,9 @@ int scara_regressor(
  *                                                              x 52, row-major
  * @return SCARA_STATUS_OK or status bits
  *
- * Operations: 101 (70 mul, 30 add, 1 neg), 4 trig, 4 other.
+ * Operations: 101 (70 mul, 30 add, 1 neg), 4 trig, 4 other calls (sign, select and the like).
  */
-int scara_regressor_standard(
+scara_status_t scara_regressor_standard(
     const scara_real_t q[SCARA_N_JOINTS],
     const scara_real_t dq[SCARA_N_JOINTS],
     const scara_real_t ddq[SCARA_N_JOINTS],
@@ -388,9 +417,9 @@ int scara_regressor_standard(
  * @param[out]  out  [30]  [A per unit of the parameter]       structural non-zeros, row after row
  * @return SCARA_STATUS_OK or status bits
  *
- * Operations: 87 (62 mul, 25 add, 0 neg), 4 trig, 4 other.
+ * Operations: 87 (62 mul, 25 add, 0 neg), 4 trig, 4 other calls (sign, select and the like).
  */
-int scara_regressor_packed(
+scara_status_t scara_regressor_packed(
     const scara_real_t q[SCARA_N_JOINTS],
     const scara_real_t dq[SCARA_N_JOINTS],
     const scara_real_t ddq[SCARA_N_JOINTS],
@@ -408,9 +437,9 @@ int scara_regressor_packed(
  *                                                               row-major
  * @return SCARA_STATUS_OK or status bits
  *
- * Operations: 89 (62 mul, 27 add, 0 neg), 4 trig, 4 other.
+ * Operations: 89 (62 mul, 27 add, 0 neg), 4 trig, 4 other calls (sign, select and the like).
  */
-int scara_slotine_li_regressor(
+scara_status_t scara_slotine_li_regressor(
     const scara_real_t q[SCARA_N_JOINTS],
     const scara_real_t dq[SCARA_N_JOINTS],
     const scara_real_t dq_r[SCARA_N_JOINTS],
@@ -428,9 +457,9 @@ int scara_slotine_li_regressor(
  *                                                                    undriven
  * @return SCARA_STATUS_OK or status bits
  *
- * Operations: 135 (81 mul, 54 add, 0 neg), 4 trig, 4 other.
+ * Operations: 135 (81 mul, 54 add, 0 neg), 4 trig, 4 other calls (sign, select and the like).
  */
-int scara_inverse_dynamics_standard(
+scara_status_t scara_inverse_dynamics_standard(
     const scara_real_t q[SCARA_N_JOINTS],
     const scara_real_t dq[SCARA_N_JOINTS],
     const scara_real_t ddq[SCARA_N_JOINTS],
@@ -447,7 +476,7 @@ int scara_inverse_dynamics_standard(
  *
  * Operations: 4 (3 mul, 1 add, 0 neg).
  */
-int scara_gravity_standard(
+scara_status_t scara_gravity_standard(
     const scara_real_t q[SCARA_N_JOINTS],
     const scara_real_t parameters[SCARA_N_STANDARD_PARAMETERS],
     scara_real_t out[SCARA_N_JOINTS]);
@@ -461,9 +490,9 @@ int scara_gravity_standard(
  * @param[out]  out         [4]   [A]                         inputs: motor currents, efforts where undriven
  * @return SCARA_STATUS_OK or status bits
  *
- * Operations: 93 (59 mul, 34 add, 0 neg), 4 trig, 4 other.
+ * Operations: 93 (59 mul, 34 add, 0 neg), 4 trig, 4 other calls (sign, select and the like).
  */
-int scara_bias_standard(
+scara_status_t scara_bias_standard(
     const scara_real_t q[SCARA_N_JOINTS],
     const scara_real_t dq[SCARA_N_JOINTS],
     const scara_real_t parameters[SCARA_N_STANDARD_PARAMETERS],
@@ -479,7 +508,7 @@ int scara_bias_standard(
  *
  * Operations: 46 (21 mul, 25 add, 0 neg), 4 trig.
  */
-int scara_mass_matrix_standard(
+scara_status_t scara_mass_matrix_standard(
     const scara_real_t q[SCARA_N_JOINTS],
     const scara_real_t parameters[SCARA_N_STANDARD_PARAMETERS],
     scara_real_t out[SCARA_N_JOINTS * SCARA_N_JOINTS]);
@@ -495,9 +524,9 @@ int scara_mass_matrix_standard(
  * @param[out]  out         [4]   [rad/s^2, rad/s^2, m/s^2, rad/s^2]  joint accelerations
  * @return SCARA_STATUS_OK or status bits
  *
- * Operations: 174 (99 mul, 75 add, 0 neg), 4 div, 4 trig, 4 other.
+ * Operations: 174 (99 mul, 75 add, 0 neg), 4 div, 4 trig, 4 other calls (sign, select and the like).
  */
-int scara_forward_dynamics_standard(
+scara_status_t scara_forward_dynamics_standard(
     const scara_real_t q[SCARA_N_JOINTS],
     const scara_real_t dq[SCARA_N_JOINTS],
     const scara_real_t input[SCARA_N_JOINTS],
@@ -516,12 +545,32 @@ int scara_forward_dynamics_standard(
  *
  * Operations: 98 (64 mul, 34 add, 0 neg), 4 trig.
  */
-int scara_energy_standard(
+scara_status_t scara_energy_standard(
     const scara_real_t q[SCARA_N_JOINTS],
     const scara_real_t dq[SCARA_N_JOINTS],
     const scara_real_t parameters[SCARA_N_STANDARD_PARAMETERS],
     scara_real_t kinetic[1],
     scara_real_t potential[1]);
+
+/**
+ * Efforts of the drives at the joints that give the accelerations ddq in the state q, dq; standard
+ * parameters.
+ *
+ * @param[in]   q           [4]   [rad, rad, m, rad]                  joint coordinates; norm at most 10000
+ * @param[in]   dq          [4]   [rad/s, rad/s, m/s, rad/s]          joint velocities; norm at most 100000
+ * @param[in]   ddq         [4]   [rad/s^2, rad/s^2, m/s^2, rad/s^2]  joint accelerations; norm at most 1e+08
+ * @param[in]   parameters  [52]                                      standard parameters; norm at most 1e+09
+ * @param[out]  out         [4]   [N m, N m, N, N m]                  efforts at the joints
+ * @return SCARA_STATUS_OK or status bits
+ *
+ * Operations: 131 (77 mul, 54 add, 0 neg), 4 trig, 4 other calls (sign, select and the like).
+ */
+scara_status_t scara_joint_effort_standard(
+    const scara_real_t q[SCARA_N_JOINTS],
+    const scara_real_t dq[SCARA_N_JOINTS],
+    const scara_real_t ddq[SCARA_N_JOINTS],
+    const scara_real_t parameters[SCARA_N_STANDARD_PARAMETERS],
+    scara_real_t out[SCARA_N_JOINTS]);
 
 /**
  * Homogeneous transforms from every link's frame to the base, link after link.
@@ -536,7 +585,7 @@ int scara_energy_standard(
  *
  * Operations: 23 (12 mul, 7 add, 4 neg), 6 trig.
  */
-int scara_forward_kinematics(
+scara_status_t scara_forward_kinematics(
     const scara_real_t q[SCARA_N_JOINTS],
     scara_real_t out[16 * SCARA_N_LINKS]);
 
@@ -549,7 +598,7 @@ int scara_forward_kinematics(
  *
  * Operations: 12 (8 mul, 4 add, 0 neg), 4 trig.
  */
-int scara_jacobian(
+scara_status_t scara_jacobian(
     const scara_real_t q[SCARA_N_JOINTS],
     scara_real_t out[6 * SCARA_N_JOINTS]);
 
@@ -566,7 +615,7 @@ int scara_jacobian(
  *
  * Operations: 12 (12 mul, 0 add, 0 neg).
  */
-int scara_motor_from_joint(
+scara_status_t scara_motor_from_joint(
     const scara_real_t q[SCARA_N_JOINTS],
     const scara_real_t dq[SCARA_N_JOINTS],
     const scara_real_t ddq[SCARA_N_JOINTS],
@@ -587,7 +636,7 @@ int scara_motor_from_joint(
  *
  * Operations: 12 (12 mul, 0 add, 0 neg).
  */
-int scara_joint_from_motor(
+scara_status_t scara_joint_from_motor(
     const scara_real_t q_m[SCARA_N_JOINTS],
     const scara_real_t dq_m[SCARA_N_JOINTS],
     const scara_real_t ddq_m[SCARA_N_JOINTS],
@@ -598,13 +647,13 @@ int scara_joint_from_motor(
 /**
  * Joint effort per input.
  *
- * @param[in]   q    [4]  [rad, rad, m, rad]            joint coordinates; norm at most 10000
- * @param[out]  out  [4]  [(N m, N m, N, N m) per (A)]  drive gains K
+ * @param[in]   q    [4]  [rad, rad, m, rad]          joint coordinates; norm at most 10000
+ * @param[out]  out  [4]  [(N m, N m, N, N m) per A]  drive gains K
  * @return SCARA_STATUS_OK or status bits
  *
  * Operations: 0 (0 mul, 0 add, 0 neg).
  */
-int scara_drive_gain(
+scara_status_t scara_drive_gain(
     const scara_real_t q[SCARA_N_JOINTS],
     scara_real_t out[SCARA_N_JOINTS]);
 
@@ -612,27 +661,27 @@ int scara_drive_gain(
  * Inputs that give the accelerations ddq, and their derivatives; at a kink of a law, as of dry
  * friction at rest, the mean of both sides; base parameters.
  *
- * @param[in]   q             [4]   [rad, rad, m, rad]                            joint coordinates; norm at
- *                                                                                most 10000
- * @param[in]   dq            [4]   [rad/s, rad/s, m/s, rad/s]                    joint velocities; norm at
- *                                                                                most 100000
- * @param[in]   ddq           [4]   [rad/s^2, rad/s^2, m/s^2, rad/s^2]            joint accelerations; norm at
- *                                                                                most 1e+08
- * @param[in]   parameters    [19]                                                base parameters; norm at
- *                                                                                most 1e+09
- * @param[out]  input         [4]   [A]                                           inputs: motor currents,
- *                                                                                efforts where undriven
- * @param[out]  input_by_q    [16]  [(A) per (rad, rad, m, rad)]                  d input / d q; 4 x 4,
- *                                                                                row-major
- * @param[out]  input_by_dq   [16]  [(A) per (rad/s, rad/s, m/s, rad/s)]          d input / d dq; 4 x 4,
- *                                                                                row-major
- * @param[out]  input_by_ddq  [16]  [(A) per (rad/s^2, rad/s^2, m/s^2, rad/s^2)]  d input / d ddq; 4 x 4,
- *                                                                                row-major
+ * @param[in]   q             [4]   [rad, rad, m, rad]                          joint coordinates; norm at
+ *                                                                              most 10000
+ * @param[in]   dq            [4]   [rad/s, rad/s, m/s, rad/s]                  joint velocities; norm at most
+ *                                                                              100000
+ * @param[in]   ddq           [4]   [rad/s^2, rad/s^2, m/s^2, rad/s^2]          joint accelerations; norm at
+ *                                                                              most 1e+08
+ * @param[in]   parameters    [19]                                              base parameters; norm at most
+ *                                                                              1e+09
+ * @param[out]  input         [4]   [A]                                         inputs: motor currents,
+ *                                                                              efforts where undriven
+ * @param[out]  input_by_q    [16]  [A per (rad, rad, m, rad)]                  d input / d q; 4 x 4,
+ *                                                                              row-major
+ * @param[out]  input_by_dq   [16]  [A per (rad/s, rad/s, m/s, rad/s)]          d input / d dq; 4 x 4,
+ *                                                                              row-major
+ * @param[out]  input_by_ddq  [16]  [A per (rad/s^2, rad/s^2, m/s^2, rad/s^2)]  d input / d ddq; 4 x 4,
+ *                                                                              row-major
  * @return SCARA_STATUS_OK or status bits
  *
- * Operations: 267 (174 mul, 93 add, 0 neg), 4 trig, 4 other.
+ * Operations: 267 (174 mul, 93 add, 0 neg), 4 trig, 4 other calls (sign, select and the like).
  */
-int scara_inverse_dynamics_derivatives(
+scara_status_t scara_inverse_dynamics_derivatives(
     const scara_real_t q[SCARA_N_JOINTS],
     const scara_real_t dq[SCARA_N_JOINTS],
     const scara_real_t ddq[SCARA_N_JOINTS],
@@ -686,7 +735,7 @@ int scara_inverse_dynamics_derivatives(
  *                                                                                                       dq; 4
  *                                                                                                       x 4,
  *                                                                                                       row-major
- * @param[out]  ddq_by_input  [16]  [(rad/s^2, rad/s^2, m/s^2, rad/s^2) per (A)]                         d ddq
+ * @param[out]  ddq_by_input  [16]  [(rad/s^2, rad/s^2, m/s^2, rad/s^2) per A]                           d ddq
  *                                                                                                       / d
  *                                                                                                       input;
  *                                                                                                       4 x
@@ -694,9 +743,9 @@ int scara_inverse_dynamics_derivatives(
  *                                                                                                       row-major
  * @return SCARA_STATUS_OK or status bits
  *
- * Operations: 394 (248 mul, 146 add, 0 neg), 4 div, 4 trig, 4 other.
+ * Operations: 394 (248 mul, 146 add, 0 neg), 4 div, 4 trig, 4 other calls (sign, select and the like).
  */
-int scara_forward_dynamics_derivatives(
+scara_status_t scara_forward_dynamics_derivatives(
     const scara_real_t q[SCARA_N_JOINTS],
     const scara_real_t dq[SCARA_N_JOINTS],
     const scara_real_t input[SCARA_N_JOINTS],
@@ -710,27 +759,27 @@ int scara_forward_dynamics_derivatives(
  * Inputs that give the accelerations ddq, and their derivatives; at a kink of a law, as of dry
  * friction at rest, the mean of both sides; standard parameters.
  *
- * @param[in]   q             [4]   [rad, rad, m, rad]                            joint coordinates; norm at
- *                                                                                most 10000
- * @param[in]   dq            [4]   [rad/s, rad/s, m/s, rad/s]                    joint velocities; norm at
- *                                                                                most 100000
- * @param[in]   ddq           [4]   [rad/s^2, rad/s^2, m/s^2, rad/s^2]            joint accelerations; norm at
- *                                                                                most 1e+08
- * @param[in]   parameters    [52]                                                standard parameters; norm at
- *                                                                                most 1e+09
- * @param[out]  input         [4]   [A]                                           inputs: motor currents,
- *                                                                                efforts where undriven
- * @param[out]  input_by_q    [16]  [(A) per (rad, rad, m, rad)]                  d input / d q; 4 x 4,
- *                                                                                row-major
- * @param[out]  input_by_dq   [16]  [(A) per (rad/s, rad/s, m/s, rad/s)]          d input / d dq; 4 x 4,
- *                                                                                row-major
- * @param[out]  input_by_ddq  [16]  [(A) per (rad/s^2, rad/s^2, m/s^2, rad/s^2)]  d input / d ddq; 4 x 4,
- *                                                                                row-major
+ * @param[in]   q             [4]   [rad, rad, m, rad]                          joint coordinates; norm at
+ *                                                                              most 10000
+ * @param[in]   dq            [4]   [rad/s, rad/s, m/s, rad/s]                  joint velocities; norm at most
+ *                                                                              100000
+ * @param[in]   ddq           [4]   [rad/s^2, rad/s^2, m/s^2, rad/s^2]          joint accelerations; norm at
+ *                                                                              most 1e+08
+ * @param[in]   parameters    [52]                                              standard parameters; norm at
+ *                                                                              most 1e+09
+ * @param[out]  input         [4]   [A]                                         inputs: motor currents,
+ *                                                                              efforts where undriven
+ * @param[out]  input_by_q    [16]  [A per (rad, rad, m, rad)]                  d input / d q; 4 x 4,
+ *                                                                              row-major
+ * @param[out]  input_by_dq   [16]  [A per (rad/s, rad/s, m/s, rad/s)]          d input / d dq; 4 x 4,
+ *                                                                              row-major
+ * @param[out]  input_by_ddq  [16]  [A per (rad/s^2, rad/s^2, m/s^2, rad/s^2)]  d input / d ddq; 4 x 4,
+ *                                                                              row-major
  * @return SCARA_STATUS_OK or status bits
  *
- * Operations: 313 (195 mul, 118 add, 0 neg), 4 trig, 4 other.
+ * Operations: 313 (195 mul, 118 add, 0 neg), 4 trig, 4 other calls (sign, select and the like).
  */
-int scara_inverse_dynamics_derivatives_standard(
+scara_status_t scara_inverse_dynamics_derivatives_standard(
     const scara_real_t q[SCARA_N_JOINTS],
     const scara_real_t dq[SCARA_N_JOINTS],
     const scara_real_t ddq[SCARA_N_JOINTS],
@@ -784,7 +833,7 @@ int scara_inverse_dynamics_derivatives_standard(
  *                                                                                                       dq; 4
  *                                                                                                       x 4,
  *                                                                                                       row-major
- * @param[out]  ddq_by_input  [16]  [(rad/s^2, rad/s^2, m/s^2, rad/s^2) per (A)]                         d ddq
+ * @param[out]  ddq_by_input  [16]  [(rad/s^2, rad/s^2, m/s^2, rad/s^2) per A]                           d ddq
  *                                                                                                       / d
  *                                                                                                       input;
  *                                                                                                       4 x
@@ -792,9 +841,9 @@ int scara_inverse_dynamics_derivatives_standard(
  *                                                                                                       row-major
  * @return SCARA_STATUS_OK or status bits
  *
- * Operations: 445 (270 mul, 175 add, 0 neg), 4 div, 4 trig, 4 other.
+ * Operations: 445 (270 mul, 175 add, 0 neg), 4 div, 4 trig, 4 other calls (sign, select and the like).
  */
-int scara_forward_dynamics_derivatives_standard(
+scara_status_t scara_forward_dynamics_derivatives_standard(
     const scara_real_t q[SCARA_N_JOINTS],
     const scara_real_t dq[SCARA_N_JOINTS],
     const scara_real_t input[SCARA_N_JOINTS],
@@ -803,6 +852,77 @@ int scara_forward_dynamics_derivatives_standard(
     scara_real_t ddq_by_q[SCARA_N_JOINTS * SCARA_N_JOINTS],
     scara_real_t ddq_by_dq[SCARA_N_JOINTS * SCARA_N_JOINTS],
     scara_real_t ddq_by_input[SCARA_N_JOINTS * SCARA_N_JOINTS]);
+
+/**
+ * External efforts at the joints by the generalised momentum, with a delay of 1 / gain; state: zero at
+ * first, then what the step before gave; base parameters.
+ *
+ * @param[in]   q           [4]   [rad, rad, m, rad]                      joint coordinates; norm at most
+ *                                                                        10000
+ * @param[in]   dq          [4]   [rad/s, rad/s, m/s, rad/s]              joint velocities; norm at most
+ *                                                                        100000
+ * @param[in]   input       [4]   [A]                                     inputs: motor currents, efforts
+ *                                                                        where undriven; norm at most 1e+09
+ * @param[in]   dt          [1]   [s]                                     time step; norm at most 10000
+ * @param[in]   gain        [4]   [1/s]                                   gains of the observer, gain dt below
+ *                                                                        1; norm at most 100000
+ * @param[in]   parameters  [19]                                          base parameters; norm at most 1e+09
+ * @param[in]   state       [4]   [kg m^2/s, kg m^2/s, kg m/s, kg m^2/s]  state of the observer: the momentum
+ *                                                                        that the model expects; norm at most
+ *                                                                        1e+09
+ * @param[out]  state_next  [4]   [kg m^2/s, kg m^2/s, kg m/s, kg m^2/s]  state after the step
+ * @param[out]  external    [4]   [N m, N m, N, N m]                      efforts that act on the arm from
+ *                                                                        outside
+ * @return SCARA_STATUS_OK or status bits
+ *
+ * Operations: 129 (73 mul, 52 add, 4 neg), 4 trig, 4 other calls (sign, select and the like).
+ */
+scara_status_t scara_momentum_observer_step(
+    const scara_real_t q[SCARA_N_JOINTS],
+    const scara_real_t dq[SCARA_N_JOINTS],
+    const scara_real_t input[SCARA_N_JOINTS],
+    const scara_real_t dt[1],
+    const scara_real_t gain[SCARA_N_JOINTS],
+    const scara_real_t parameters[SCARA_N_PARAMETERS],
+    const scara_real_t state[SCARA_N_OBSERVER_STATES],
+    scara_real_t state_next[SCARA_N_OBSERVER_STATES],
+    scara_real_t external[SCARA_N_JOINTS]);
+
+/**
+ * External efforts at the joints by the generalised momentum, with a delay of 1 / gain; state: zero at
+ * first, then what the step before gave; standard parameters.
+ *
+ * @param[in]   q           [4]   [rad, rad, m, rad]                      joint coordinates; norm at most
+ *                                                                        10000
+ * @param[in]   dq          [4]   [rad/s, rad/s, m/s, rad/s]              joint velocities; norm at most
+ *                                                                        100000
+ * @param[in]   input       [4]   [A]                                     inputs: motor currents, efforts
+ *                                                                        where undriven; norm at most 1e+09
+ * @param[in]   dt          [1]   [s]                                     time step; norm at most 10000
+ * @param[in]   gain        [4]   [1/s]                                   gains of the observer, gain dt below
+ *                                                                        1; norm at most 100000
+ * @param[in]   parameters  [52]                                          standard parameters; norm at most
+ *                                                                        1e+09
+ * @param[in]   state       [4]   [kg m^2/s, kg m^2/s, kg m/s, kg m^2/s]  state of the observer: the momentum
+ *                                                                        that the model expects; norm at most
+ *                                                                        1e+09
+ * @param[out]  state_next  [4]   [kg m^2/s, kg m^2/s, kg m/s, kg m^2/s]  state after the step
+ * @param[out]  external    [4]   [N m, N m, N, N m]                      efforts that act on the arm from
+ *                                                                        outside
+ * @return SCARA_STATUS_OK or status bits
+ *
+ * Operations: 154 (86 mul, 64 add, 4 neg), 4 trig, 4 other calls (sign, select and the like).
+ */
+scara_status_t scara_momentum_observer_step_standard(
+    const scara_real_t q[SCARA_N_JOINTS],
+    const scara_real_t dq[SCARA_N_JOINTS],
+    const scara_real_t input[SCARA_N_JOINTS],
+    const scara_real_t dt[1],
+    const scara_real_t gain[SCARA_N_JOINTS],
+    const scara_real_t parameters[SCARA_N_STANDARD_PARAMETERS],
+    const scara_real_t state[SCARA_N_OBSERVER_STATES],
+    scara_real_t state_next[SCARA_N_OBSERVER_STATES],
+    scara_real_t external[SCARA_N_JOINTS]);
 
 #ifdef __cplusplus
 }

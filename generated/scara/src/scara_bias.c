@@ -6,7 +6,7 @@
  * Arm scara, description c1d518ff4a0020fb.
  * SPDX-License-Identifier: 0BSD
  *
- * Operations: 74 (49 mul, 25 add, 0 neg), 4 trig, 4 other.
+ * Operations: 74 (49 mul, 25 add, 0 neg), 4 trig, 4 other calls (sign, select and the like).
  *
  * @param[in]   q           [4]   [rad, rad, m, rad]          joint coordinates; norm at most 10000
  * @param[in]   dq          [4]   [rad/s, rad/s, m/s, rad/s]  joint velocities; norm at most 100000
@@ -44,11 +44,11 @@
  */
 #include "scara_private.h"
 
-#if SCARA_GENERATION != 0x5A40077AUL
+#if SCARA_GENERATION != 0xC2234E4EUL
 #error "scara.h and scara_bias.c are of different generations: generate the arm again"
 #endif
 
-int scara_bias(
+scara_status_t scara_bias(
     const scara_real_t q[SCARA_N_JOINTS],
     const scara_real_t dq[SCARA_N_JOINTS],
     const scara_real_t parameters[SCARA_N_PARAMETERS],
@@ -56,7 +56,7 @@ int scara_bias(
 {
     enum { ZZ1R = 0, ZZ2R, MX2R, MY2R, M3R, ZZ4, MX4, MY4, FV1, FC1, FV2, FC2, IA2, FV3, FC3, IA3, FV4, FC4,
         IA4 };
-    int status = SCARA_STATUS_OK;
+    scara_status_t status = SCARA_STATUS_OK;
 
     if (!scara_within_joints(q, SCARA_C(1.0e8))
         || !scara_within_joints(dq, SCARA_C(1.0e10))
@@ -72,34 +72,37 @@ int scara_bias(
     SCARA_SINCOS(q[1], &t7, &t3);
     scara_real_t t6, t9;
     SCARA_SINCOS(q[3], &t6, &t9);
-    const scara_real_t t0 = dq[0] + dq[1];
+    const scara_real_t t0 = dq[0] + dq[1]; /* link j2: motion */
     const scara_real_t t1 = t0 * t0;
     const scara_real_t t2 = SCARA_C(0.325) * (dq[0] * dq[0]);
     const scara_real_t t4 = t3 * t2;
-    const scara_real_t t5 = SCARA_C(-0.275) * t1 - t4;
-    const scara_real_t t8 = t7 * t2;
+    const scara_real_t t5 = SCARA_C(-0.275) * t1 - t4; /* link j3: motion */
+    const scara_real_t t8 = t7 * t2; /* link j2: motion */
+    /* link j4: force and moment */
     const scara_real_t t10 = parameters[MX4] * (t6 * t5 + t9 * t8) + parameters[MY4] * (t9 * t5 - t6 * t8);
-    const scara_real_t t11 = dq[3] - t0;
+    const scara_real_t t11 = dq[3] - t0; /* link j4: motion */
     const scara_real_t t12 = t11 * t11;
-    const scara_real_t t13 = parameters[MX4] * t12;
+    const scara_real_t t13 = parameters[MX4] * t12; /* link j4: force and moment */
     const scara_real_t t14 = parameters[MY4] * t12;
-    const scara_real_t t15 = parameters[M3R] * t8 + (t6 * t13 + t9 * t14);
+    const scara_real_t t15 = parameters[M3R] * t8 + (t6 * t13 + t9 * t14); /* link j4: what it passes on */
+    /* link j3: what it passes on */
     const scara_real_t t16 = parameters[MX2R] * t8 + parameters[MY2R] * t4 + (t10 + SCARA_C(0.275) * t15);
     const scara_real_t t17 = parameters[M3R] * t5 + (t6 * t14 - t9 * t13) - parameters[MX2R] * t1;
+    /* link j2: what it passes on */
     const scara_real_t t18 = SCARA_C(0.325) * (t7 * t17 + t3 * (t15 - parameters[MY2R] * t1));
-    const scara_real_t t19 = scara_sign(dq[0]);
+    const scara_real_t t19 = scara_sign(dq[0]); /* joint j1: coulomb_friction */
     const scara_real_t t20 = SCARA_C(5.0) * (parameters[FV1] * (SCARA_C(80.0) * dq[0])
         + parameters[FC1] * t19) + SCARA_C(0.0625) * (t16 + t18);
     out[0] = t20;
-    const scara_real_t t21 = scara_sign(dq[1]);
+    const scara_real_t t21 = scara_sign(dq[1]); /* joint j2: coulomb_friction */
     const scara_real_t t22 = SCARA_C(5.0) * (parameters[FV2] * (SCARA_C(50.0) * dq[1])
         + parameters[FC2] * t21) + SCARA_C(0.1) * t16;
     out[1] = t22;
-    const scara_real_t t23 = scara_sign(dq[2]);
+    const scara_real_t t23 = scara_sign(dq[2]); /* joint j3: coulomb_friction */
     const scara_real_t t24 = SCARA_C(-0.3122619983462987) * parameters[M3R]
         + SCARA_C(10.0) * (parameters[FV3] * (SCARA_C(314.1592653589793) * dq[2]) + parameters[FC3] * t23);
     out[2] = t24;
-    const scara_real_t t25 = scara_sign(dq[3]);
+    const scara_real_t t25 = scara_sign(dq[3]); /* joint j4: coulomb_friction */
     const scara_real_t t26 = SCARA_C(10.0) * (parameters[FV4] * (SCARA_C(20.0) * dq[3])
         + parameters[FC4] * t25) + SCARA_C(-0.5) * t10;
     out[3] = t26;

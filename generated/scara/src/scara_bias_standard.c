@@ -6,7 +6,7 @@
  * Arm scara, description c1d518ff4a0020fb.
  * SPDX-License-Identifier: 0BSD
  *
- * Operations: 93 (59 mul, 34 add, 0 neg), 4 trig, 4 other.
+ * Operations: 93 (59 mul, 34 add, 0 neg), 4 trig, 4 other calls (sign, select and the like).
  *
  * @param[in]   q           [4]   [rad, rad, m, rad]          joint coordinates; norm at most 10000
  * @param[in]   dq          [4]   [rad/s, rad/s, m/s, rad/s]  joint velocities; norm at most 100000
@@ -77,11 +77,11 @@
  */
 #include "scara_private.h"
 
-#if SCARA_GENERATION != 0x5A40077AUL
+#if SCARA_GENERATION != 0xC2234E4EUL
 #error "scara.h and scara_bias_standard.c are of different generations: generate the arm again"
 #endif
 
-int scara_bias_standard(
+scara_status_t scara_bias_standard(
     const scara_real_t q[SCARA_N_JOINTS],
     const scara_real_t dq[SCARA_N_JOINTS],
     const scara_real_t parameters[SCARA_N_STANDARD_PARAMETERS],
@@ -90,7 +90,7 @@ int scara_bias_standard(
     enum { XX1 = 0, XY1, XZ1, YY1, YZ1, ZZ1, MX1, MY1, MZ1, M1, XX2, XY2, XZ2, YY2, YZ2, ZZ2, MX2, MY2, MZ2,
         M2, XX3, XY3, XZ3, YY3, YZ3, ZZ3, MX3, MY3, MZ3, M3, XX4, XY4, XZ4, YY4, YZ4, ZZ4, MX4, MY4, MZ4, M4,
         FV1, FC1, IA1, FV2, FC2, IA2, FV3, FC3, IA3, FV4, FC4, IA4 };
-    int status = SCARA_STATUS_OK;
+    scara_status_t status = SCARA_STATUS_OK;
 
     if (!scara_within_joints(q, SCARA_C(1.0e8))
         || !scara_within_joints(dq, SCARA_C(1.0e10))
@@ -106,39 +106,42 @@ int scara_bias_standard(
     SCARA_SINCOS(q[1], &t7, &t3);
     scara_real_t t9, t6;
     SCARA_SINCOS(q[3], &t9, &t6);
-    const scara_real_t t0 = dq[0] + dq[1];
+    const scara_real_t t0 = dq[0] + dq[1]; /* link j2: motion */
     const scara_real_t t1 = t0 * t0;
     const scara_real_t t2 = SCARA_C(0.325) * (dq[0] * dq[0]);
     const scara_real_t t4 = t3 * t2;
-    const scara_real_t t5 = SCARA_C(-0.275) * t1 - t4;
-    const scara_real_t t8 = t7 * t2;
-    const scara_real_t t10 = t6 * t5 - t9 * t8;
+    const scara_real_t t5 = SCARA_C(-0.275) * t1 - t4; /* link j3: motion */
+    const scara_real_t t8 = t7 * t2; /* link j2: motion */
+    const scara_real_t t10 = t6 * t5 - t9 * t8; /* link j4: motion */
     const scara_real_t t11 = dq[3] - t0;
     const scara_real_t t12 = t11 * t11;
-    const scara_real_t t13 = t12 * parameters[MX4] - parameters[M4] * t10;
-    const scara_real_t t14 = t9 * t5 + t6 * t8;
-    const scara_real_t t15 = parameters[M4] * t14 + t12 * parameters[MY4];
+    const scara_real_t t13 = t12 * parameters[MX4] - parameters[M4] * t10; /* link j4: force and moment */
+    const scara_real_t t14 = t9 * t5 + t6 * t8; /* link j4: motion */
+    const scara_real_t t15 = parameters[M4] * t14 + t12 * parameters[MY4]; /* link j4: force and moment */
+    /* link j4: what it passes on */
     const scara_real_t t16 = parameters[M3] * t5 - t1 * parameters[MX3] + (t9 * t15 - t6 * t13);
     const scara_real_t t17 = t8 * parameters[M3] + t1 * parameters[MY3] + (t9 * t13 + t6 * t15);
+    /* link j2: what it passes on */
     const scara_real_t t18 = t7 * (t16 - (t4 * parameters[M2] + t1 * parameters[MX2]))
         + t3 * (t8 * parameters[M2] - t1 * parameters[MY2] + t17);
-    const scara_real_t t19 = parameters[MX4] * t14 + parameters[MY4] * t10;
+    const scara_real_t t19 = parameters[MX4] * t14 + parameters[MY4] * t10; /* link j4: force and moment */
+    /* link j3: what it passes on */
     const scara_real_t t20 = t8 * parameters[MX3] + parameters[MY3] * t5 + t19 + SCARA_C(0.275) * t17;
     const scara_real_t t21 = t8 * parameters[MX2] + t4 * parameters[MY2] + t20;
-    const scara_real_t t22 = scara_sign(dq[0]);
+    const scara_real_t t22 = scara_sign(dq[0]); /* joint j1: coulomb_friction */
     const scara_real_t t23 = SCARA_C(5.0) * (SCARA_C(80.0) * dq[0] * parameters[FV1] + t22 * parameters[FC1])
         + SCARA_C(0.0625) * (t21 + SCARA_C(0.325) * t18);
     out[0] = t23;
-    const scara_real_t t24 = scara_sign(dq[1]);
+    const scara_real_t t24 = scara_sign(dq[1]); /* joint j2: coulomb_friction */
     const scara_real_t t25 = SCARA_C(5.0) * (SCARA_C(50.0) * dq[1] * parameters[FV2] + t24 * parameters[FC2])
         + SCARA_C(0.1) * t21;
     out[1] = t25;
-    const scara_real_t t26 = scara_sign(dq[2]);
+    const scara_real_t t26 = scara_sign(dq[2]); /* joint j3: coulomb_friction */
     const scara_real_t t27 = SCARA_C(0.03183098861837907) * (SCARA_C(-9.81) * parameters[M3]
         + SCARA_C(-9.81) * parameters[M4])
         + SCARA_C(10.0) * (SCARA_C(314.1592653589793) * dq[2] * parameters[FV3] + t26 * parameters[FC3]);
     out[2] = t27;
-    const scara_real_t t28 = scara_sign(dq[3]);
+    const scara_real_t t28 = scara_sign(dq[3]); /* joint j4: coulomb_friction */
     const scara_real_t t29 = SCARA_C(10.0) * (SCARA_C(20.0) * dq[3] * parameters[FV4] + t28 * parameters[FC4])
         + SCARA_C(-0.5) * t19;
     out[3] = t29;

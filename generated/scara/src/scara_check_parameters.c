@@ -8,16 +8,16 @@
  */
 #include "scara_private.h"
 
-#if SCARA_GENERATION != 0x5A40077AUL
+#if SCARA_GENERATION != 0xC2234E4EUL
 #error "scara.h and scara_check_parameters.c are of different generations: generate the arm again"
 #endif
 
-int scara_check_parameters(const scara_real_t parameters[SCARA_N_PARAMETERS])
+scara_status_t scara_check_parameters(const scara_real_t parameters[SCARA_N_PARAMETERS])
 {
     return scara_within(parameters, 19, SCARA_C(1.0e18)) ? SCARA_STATUS_OK : SCARA_STATUS_INPUT;
 }
 
-int scara_check_parameters_standard(const scara_real_t parameters[SCARA_N_STANDARD_PARAMETERS])
+scara_status_t scara_check_parameters_standard(const scara_real_t parameters[SCARA_N_STANDARD_PARAMETERS])
 {
     return scara_within(parameters, 52, SCARA_C(1.0e18)) ? SCARA_STATUS_OK : SCARA_STATUS_INPUT;
 }

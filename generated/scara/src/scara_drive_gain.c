@@ -8,8 +8,8 @@
  *
  * Operations: 0 (0 mul, 0 add, 0 neg).
  *
- * @param[in]   q    [4]  [rad, rad, m, rad]            joint coordinates; norm at most 10000
- * @param[out]  out  [4]  [(N m, N m, N, N m) per (A)]  drive gains K
+ * @param[in]   q    [4]  [rad, rad, m, rad]          joint coordinates; norm at most 10000
+ * @param[out]  out  [4]  [(N m, N m, N, N m) per A]  drive gains K
  *
  * Coordinates:
  *
@@ -20,15 +20,15 @@
  */
 #include "scara_private.h"
 
-#if SCARA_GENERATION != 0x5A40077AUL
+#if SCARA_GENERATION != 0xC2234E4EUL
 #error "scara.h and scara_drive_gain.c are of different generations: generate the arm again"
 #endif
 
-int scara_drive_gain(
+scara_status_t scara_drive_gain(
     const scara_real_t q[SCARA_N_JOINTS],
     scara_real_t out[SCARA_N_JOINTS])
 {
-    int status = SCARA_STATUS_OK;
+    scara_status_t status = SCARA_STATUS_OK;
 
     if (!scara_within_joints(q, SCARA_C(1.0e8))) {
         status |= SCARA_STATUS_INPUT;

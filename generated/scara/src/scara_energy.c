@@ -45,11 +45,11 @@
  */
 #include "scara_private.h"
 
-#if SCARA_GENERATION != 0x5A40077AUL
+#if SCARA_GENERATION != 0xC2234E4EUL
 #error "scara.h and scara_energy.c are of different generations: generate the arm again"
 #endif
 
-int scara_energy(
+scara_status_t scara_energy(
     const scara_real_t q[SCARA_N_JOINTS],
     const scara_real_t dq[SCARA_N_JOINTS],
     const scara_real_t parameters[SCARA_N_PARAMETERS],
@@ -58,7 +58,7 @@ int scara_energy(
 {
     enum { ZZ1R = 0, ZZ2R, MX2R, MY2R, M3R, ZZ4, MX4, MY4, FV1, FC1, FV2, FC2, IA2, FV3, FC3, IA3, FV4, FC4,
         IA4 };
-    int status = SCARA_STATUS_OK;
+    scara_status_t status = SCARA_STATUS_OK;
 
     if (!scara_within_joints(q, SCARA_C(1.0e8))
         || !scara_within_joints(dq, SCARA_C(1.0e10))
@@ -75,17 +75,17 @@ int scara_energy(
     SCARA_SINCOS(q[1], &t4, &t2);
     scara_real_t t13, t12;
     SCARA_SINCOS(q[3], &t13, &t12);
-    const scara_real_t t0 = dq[0] + dq[1];
-    const scara_real_t t1 = SCARA_C(0.325) * dq[0];
+    const scara_real_t t0 = dq[0] + dq[1]; /* link j2: motion */
+    const scara_real_t t1 = SCARA_C(0.325) * dq[0]; /* link j2: velocity of its origin */
     const scara_real_t t3 = t2 * t1;
     const scara_real_t t5 = t4 * t1;
     const scara_real_t t6 = SCARA_C(0.5) * (dq[0] * (parameters[ZZ1R] * dq[0]))
         + SCARA_C(0.5) * (t0 * (parameters[ZZ2R] * t0));
     const scara_real_t t7 = t6 + (parameters[MX2R] * (t0 * t3) - parameters[MY2R] * (t0 * t5));
-    const scara_real_t t8 = t3 + SCARA_C(0.275) * t0;
+    const scara_real_t t8 = t3 + SCARA_C(0.275) * t0; /* link j3: velocity of its origin */
     const scara_real_t t9 = dq[2] * dq[2];
     const scara_real_t t10 = SCARA_C(0.5) * (parameters[M3R] * (t9 + (t5 * t5 + t8 * t8)));
-    const scara_real_t t11 = dq[3] - t0;
+    const scara_real_t t11 = dq[3] - t0; /* link j4: motion */
     const scara_real_t t14 = parameters[MY4] * (t11 * (t13 * t8 - t12 * t5))
         - parameters[MX4] * (t11 * (t13 * t5 + t12 * t8));
     const scara_real_t t15 = t7 + t10 + SCARA_C(0.5) * (t11 * (parameters[ZZ4] * t11)) + t14;

@@ -78,11 +78,11 @@
  */
 #include "scara_private.h"
 
-#if SCARA_GENERATION != 0x5A40077AUL
+#if SCARA_GENERATION != 0xC2234E4EUL
 #error "scara.h and scara_energy_standard.c are of different generations: generate the arm again"
 #endif
 
-int scara_energy_standard(
+scara_status_t scara_energy_standard(
     const scara_real_t q[SCARA_N_JOINTS],
     const scara_real_t dq[SCARA_N_JOINTS],
     const scara_real_t parameters[SCARA_N_STANDARD_PARAMETERS],
@@ -92,7 +92,7 @@ int scara_energy_standard(
     enum { XX1 = 0, XY1, XZ1, YY1, YZ1, ZZ1, MX1, MY1, MZ1, M1, XX2, XY2, XZ2, YY2, YZ2, ZZ2, MX2, MY2, MZ2,
         M2, XX3, XY3, XZ3, YY3, YZ3, ZZ3, MX3, MY3, MZ3, M3, XX4, XY4, XZ4, YY4, YZ4, ZZ4, MX4, MY4, MZ4, M4,
         FV1, FC1, IA1, FV2, FC2, IA2, FV3, FC3, IA3, FV4, FC4, IA4 };
-    int status = SCARA_STATUS_OK;
+    scara_status_t status = SCARA_STATUS_OK;
 
     if (!scara_within_joints(q, SCARA_C(1.0e8))
         || !scara_within_joints(dq, SCARA_C(1.0e10))
@@ -109,22 +109,22 @@ int scara_energy_standard(
     SCARA_SINCOS(q[1], &t1, &t4);
     scara_real_t t14, t15;
     SCARA_SINCOS(q[3], &t14, &t15);
-    const scara_real_t t0 = SCARA_C(0.325) * dq[0];
+    const scara_real_t t0 = SCARA_C(0.325) * dq[0]; /* link j2: velocity of its origin */
     const scara_real_t t2 = t1 * t0;
     const scara_real_t t3 = t2 * t2;
     const scara_real_t t5 = t4 * t0;
-    const scara_real_t t6 = dq[0] + dq[1];
+    const scara_real_t t6 = dq[0] + dq[1]; /* link j2: motion */
     const scara_real_t t7 = t6 * (t6 * parameters[ZZ2]) + parameters[M2] * (t3 + t5 * t5);
     const scara_real_t t8 = t6 * t2;
     const scara_real_t t9 = SCARA_C(0.5) * (dq[0] * (dq[0] * parameters[ZZ1])) + SCARA_C(0.5) * t7
         + (parameters[MX2] * (t6 * t5) - parameters[MY2] * t8);
-    const scara_real_t t10 = t5 + SCARA_C(0.275) * t6;
+    const scara_real_t t10 = t5 + SCARA_C(0.275) * t6; /* link j3: velocity of its origin */
     const scara_real_t t11 = dq[2] * dq[2];
     const scara_real_t t12 = t6 * (t6 * parameters[ZZ3]) + parameters[M3] * (t11 + (t3 + t10 * t10));
     const scara_real_t t13 = t9 + SCARA_C(0.5) * t12 + (parameters[MX3] * (t6 * t10) + parameters[MY3] * t8);
-    const scara_real_t t16 = t15 * t2 - t14 * t10;
+    const scara_real_t t16 = t15 * t2 - t14 * t10; /* link j4: velocity of its origin */
     const scara_real_t t17 = t14 * t2 + t15 * t10;
-    const scara_real_t t18 = dq[3] - t6;
+    const scara_real_t t18 = dq[3] - t6; /* link j4: motion */
     const scara_real_t t19 = t18 * (t18 * parameters[ZZ4]) + parameters[M4] * (t11 + (t16 * t16 + t17 * t17));
     const scara_real_t t20 = t13 + SCARA_C(0.5) * t19 - (parameters[MX4] * (t18 * t17)
         + parameters[MY4] * (t18 * t16));

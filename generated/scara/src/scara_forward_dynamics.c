@@ -6,7 +6,7 @@
  * Arm scara, description c1d518ff4a0020fb.
  * SPDX-License-Identifier: 0BSD
  *
- * Operations: 149 (89 mul, 60 add, 0 neg), 4 div, 4 trig, 4 other.
+ * Operations: 149 (89 mul, 60 add, 0 neg), 4 div, 4 trig, 4 other calls (sign, select and the like).
  *
  * @param[in]   q           [4]   [rad, rad, m, rad]                  joint coordinates; norm at most 10000
  * @param[in]   dq          [4]   [rad/s, rad/s, m/s, rad/s]          joint velocities; norm at most 100000
@@ -46,11 +46,11 @@
  */
 #include "scara_private.h"
 
-#if SCARA_GENERATION != 0x5A40077AUL
+#if SCARA_GENERATION != 0xC2234E4EUL
 #error "scara.h and scara_forward_dynamics.c are of different generations: generate the arm again"
 #endif
 
-int scara_forward_dynamics(
+scara_status_t scara_forward_dynamics(
     const scara_real_t q[SCARA_N_JOINTS],
     const scara_real_t dq[SCARA_N_JOINTS],
     const scara_real_t input[SCARA_N_JOINTS],
@@ -59,7 +59,7 @@ int scara_forward_dynamics(
 {
     enum { ZZ1R = 0, ZZ2R, MX2R, MY2R, M3R, ZZ4, MX4, MY4, FV1, FC1, FV2, FC2, IA2, FV3, FC3, IA3, FV4, FC4,
         IA4 };
-    int status = SCARA_STATUS_OK;
+    scara_status_t status = SCARA_STATUS_OK;
 
     if (!scara_within_joints(q, SCARA_C(1.0e8))
         || !scara_within_joints(dq, SCARA_C(1.0e10))
@@ -86,11 +86,13 @@ int scara_forward_dynamics(
         scara_zero(out, 4);
         return SCARA_STATUS_PIVOT;
     }
+    /* link j4: column of the mass matrix */
     const scara_real_t t4 = t3 * parameters[MX4] - t2 * parameters[MY4];
     const scara_real_t t5 = parameters[ZZ4] + SCARA_C(0.275) * t4;
     const scara_real_t t6 = SCARA_C(1.0) / t1;
     const scara_real_t t7 = t5 * t6;
-    const scara_real_t t8 = SCARA_C(0.275) * parameters[M3R];
+    const scara_real_t t8 = SCARA_C(0.275) * parameters[M3R]; /* link j3: column of the mass matrix */
+    /* link j3: inertia of it and all beyond */
     const scara_real_t t9 = parameters[ZZ2R] + (parameters[ZZ4] + SCARA_C(0.275) * (SCARA_C(2.0) * t4 + t8));
     const scara_real_t t10 = t9 + SCARA_C(2.5e3) * parameters[IA2];
     const scara_real_t t11 = scara_bounded(t10 - t5 * t7);
@@ -103,13 +105,17 @@ int scara_forward_dynamics(
         scara_zero(out, 4);
         return SCARA_STATUS_PIVOT;
     }
+    /* link j4: column of the mass matrix */
     const scara_real_t t13 = t3 * parameters[MY4] + t2 * parameters[MX4];
+    /* link j2: column of the mass matrix */
     const scara_real_t t16 = t14 * (parameters[MY2R] - t13) - t15 * (parameters[MX2R] + (t4 + t8));
+    /* link j4: column of the mass matrix */
     const scara_real_t t17 = t5 + SCARA_C(0.325) * (t14 * t13 + t15 * t4);
     const scara_real_t t18 = SCARA_C(0.325) * t16 - t9 + t17 * t7;
     const scara_real_t t19 = SCARA_C(1.0) / t11;
     const scara_real_t t20 = t18 * t19;
     const scara_real_t t21 = t17 * t6;
+    /* link j2: inertia of it and all beyond */
     const scara_real_t t22 = parameters[ZZ1R] + (t9 + SCARA_C(0.325) * (SCARA_C(0.325) * parameters[M3R]
         + SCARA_C(-2.0) * t16));
     const scara_real_t t23 = scara_bounded(t22 - t17 * t21 - t18 * t20);
@@ -122,30 +128,33 @@ int scara_forward_dynamics(
         scara_zero(out, 4);
         return SCARA_STATUS_PIVOT;
     }
-    const scara_real_t t25 = dq[0] + dq[1];
+    const scara_real_t t25 = dq[0] + dq[1]; /* link j2: motion */
     const scara_real_t t26 = t25 * t25;
     const scara_real_t t27 = SCARA_C(0.325) * (dq[0] * dq[0]);
     const scara_real_t t28 = t15 * t27;
-    const scara_real_t t29 = t28 + SCARA_C(0.275) * t26;
-    const scara_real_t t30 = t14 * t27;
+    const scara_real_t t29 = t28 + SCARA_C(0.275) * t26; /* link j3: motion */
+    const scara_real_t t30 = t14 * t27; /* link j2: motion */
+    /* link j4: force and moment */
     const scara_real_t t31 = parameters[MX4] * (t2 * t29 - t3 * t30) + parameters[MY4] * (t3 * t29
         + t2 * t30);
-    const scara_real_t t32 = t25 - dq[3];
+    const scara_real_t t32 = t25 - dq[3]; /* link j4: motion */
     const scara_real_t t33 = t32 * t32;
-    const scara_real_t t34 = parameters[MX4] * t33;
+    const scara_real_t t34 = parameters[MX4] * t33; /* link j4: force and moment */
     const scara_real_t t35 = parameters[MY4] * t33;
-    const scara_real_t t36 = parameters[M3R] * t30 + (t2 * t34 + t3 * t35);
+    const scara_real_t t36 = parameters[M3R] * t30 + (t2 * t34 + t3 * t35); /* link j4: what it passes on */
+    /* link j3: what it passes on */
     const scara_real_t t37 = t31 + SCARA_C(-0.275) * t36 - (parameters[MX2R] * t30 + parameters[MY2R] * t28);
     const scara_real_t t38 = parameters[MX2R] * t26 + (parameters[M3R] * t29 + (t3 * t34 - t2 * t35));
+    /* link j2: what it passes on */
     const scara_real_t t39 = SCARA_C(0.325) * (t14 * t38 + t15 * (parameters[MY2R] * t26 - t36));
-    const scara_real_t t40 = scara_sign(dq[0]);
+    const scara_real_t t40 = scara_sign(dq[0]); /* joint j1: coulomb_friction */
     const scara_real_t t41 = SCARA_C(80.0) * (parameters[FV1] * (SCARA_C(-80.0) * dq[0])
         - parameters[FC1] * t40) + (t37 + t39);
-    const scara_real_t t42 = scara_sign(dq[3]);
+    const scara_real_t t42 = scara_sign(dq[3]); /* joint j4: coulomb_friction */
     const scara_real_t t43 = SCARA_C(20.0) * (parameters[FV4] * (SCARA_C(-20.0) * dq[3])
         - parameters[FC4] * t42) - t31;
     const scara_real_t t44 = SCARA_C(2.0) * input[3] + t43;
-    const scara_real_t t45 = scara_sign(dq[1]);
+    const scara_real_t t45 = scara_sign(dq[1]); /* joint j2: coulomb_friction */
     const scara_real_t t46 = SCARA_C(50.0) * (parameters[FV2] * (SCARA_C(50.0) * dq[1])
         + parameters[FC2] * t45) - t37;
     const scara_real_t t47 = SCARA_C(10.0) * input[1] - t46 + t44 * t7;
@@ -155,7 +164,7 @@ int scara_forward_dynamics(
     out[0] = t50;
     const scara_real_t t51 = scara_bounded(t47 * t19 + t20 * t50);
     out[1] = t51;
-    const scara_real_t t52 = scara_sign(dq[2]);
+    const scara_real_t t52 = scara_sign(dq[2]); /* joint j3: coulomb_friction */
     const scara_real_t
         t53 = SCARA_C(314.1592653589793) * (parameters[FV3] * (SCARA_C(-314.1592653589793) * dq[2])
         - parameters[FC3] * t52) + SCARA_C(9.81) * parameters[M3R];

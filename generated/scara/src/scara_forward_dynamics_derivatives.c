@@ -7,7 +7,7 @@
  * Arm scara, description c1d518ff4a0020fb.
  * SPDX-License-Identifier: 0BSD
  *
- * Operations: 394 (248 mul, 146 add, 0 neg), 4 div, 4 trig, 4 other.
+ * Operations: 394 (248 mul, 146 add, 0 neg), 4 div, 4 trig, 4 other calls (sign, select and the like).
  *
  * @param[in]   q             [4]   [rad, rad, m, rad]                                                   joint
  *                                                                                                       coordinates;
@@ -49,7 +49,7 @@
  *                                                                                                       dq; 4
  *                                                                                                       x 4,
  *                                                                                                       row-major
- * @param[out]  ddq_by_input  [16]  [(rad/s^2, rad/s^2, m/s^2, rad/s^2) per (A)]                         d ddq
+ * @param[out]  ddq_by_input  [16]  [(rad/s^2, rad/s^2, m/s^2, rad/s^2) per A]                           d ddq
  *                                                                                                       / d
  *                                                                                                       input;
  *                                                                                                       4 x
@@ -87,11 +87,11 @@
  */
 #include "scara_private.h"
 
-#if SCARA_GENERATION != 0x5A40077AUL
+#if SCARA_GENERATION != 0xC2234E4EUL
 #error "scara.h and scara_forward_dynamics_derivatives.c are of different generations: generate the arm again"
 #endif
 
-int scara_forward_dynamics_derivatives(
+scara_status_t scara_forward_dynamics_derivatives(
     const scara_real_t q[SCARA_N_JOINTS],
     const scara_real_t dq[SCARA_N_JOINTS],
     const scara_real_t input[SCARA_N_JOINTS],
@@ -103,7 +103,7 @@ int scara_forward_dynamics_derivatives(
 {
     enum { ZZ1R = 0, ZZ2R, MX2R, MY2R, M3R, ZZ4, MX4, MY4, FV1, FC1, FV2, FC2, IA2, FV3, FC3, IA3, FV4, FC4,
         IA4 };
-    int status = SCARA_STATUS_OK;
+    scara_status_t status = SCARA_STATUS_OK;
 
     if (!scara_within_joints(q, SCARA_C(1.0e8))
         || !scara_within_joints(dq, SCARA_C(1.0e10))
@@ -139,11 +139,13 @@ int scara_forward_dynamics_derivatives(
         scara_zero(ddq_by_input, 16);
         return SCARA_STATUS_PIVOT;
     }
+    /* link j4: column of the mass matrix */
     const scara_real_t t4 = t3 * parameters[MX4] - t2 * parameters[MY4];
     const scara_real_t t5 = parameters[ZZ4] + SCARA_C(0.275) * t4;
     const scara_real_t t6 = SCARA_C(1.0) / t1;
     const scara_real_t t7 = t5 * t6;
-    const scara_real_t t8 = SCARA_C(0.275) * parameters[M3R];
+    const scara_real_t t8 = SCARA_C(0.275) * parameters[M3R]; /* link j3: column of the mass matrix */
+    /* link j3: inertia of it and all beyond */
     const scara_real_t t9 = parameters[ZZ2R] + (parameters[ZZ4] + SCARA_C(0.275) * (SCARA_C(2.0) * t4 + t8));
     const scara_real_t t10 = t9 + SCARA_C(2.5e3) * parameters[IA2];
     const scara_real_t t11 = scara_bounded(t10 - t5 * t7);
@@ -162,15 +164,18 @@ int scara_forward_dynamics_derivatives(
         scara_zero(ddq_by_input, 16);
         return SCARA_STATUS_PIVOT;
     }
+    /* link j4: column of the mass matrix */
     const scara_real_t t13 = t3 * parameters[MY4] + t2 * parameters[MX4];
-    const scara_real_t t14 = parameters[MY2R] - t13;
+    const scara_real_t t14 = parameters[MY2R] - t13; /* link j3: inertia of it and all beyond */
     const scara_real_t t16 = parameters[MX2R] + (t4 + t8);
-    const scara_real_t t18 = t15 * t14 - t17 * t16;
+    const scara_real_t t18 = t15 * t14 - t17 * t16; /* link j2: column of the mass matrix */
+    /* link j4: column of the mass matrix */
     const scara_real_t t19 = t5 + SCARA_C(0.325) * (t15 * t13 + t17 * t4);
     const scara_real_t t20 = SCARA_C(0.325) * t18 - t9 + t19 * t7;
     const scara_real_t t21 = SCARA_C(1.0) / t11;
     const scara_real_t t22 = t20 * t21;
     const scara_real_t t23 = t19 * t6;
+    /* link j2: inertia of it and all beyond */
     const scara_real_t t24 = parameters[ZZ1R] + (t9 + SCARA_C(0.325) * (SCARA_C(0.325) * parameters[M3R]
         + SCARA_C(-2.0) * t18));
     const scara_real_t t25 = scara_bounded(t24 - t19 * t23 - t20 * t22);
@@ -189,33 +194,37 @@ int scara_forward_dynamics_derivatives(
         scara_zero(ddq_by_input, 16);
         return SCARA_STATUS_PIVOT;
     }
-    const scara_real_t t27 = dq[0] + dq[1];
+    const scara_real_t t27 = dq[0] + dq[1]; /* link j2: motion */
     const scara_real_t t28 = t27 * t27;
-    const scara_real_t t29 = SCARA_C(0.275) * t28;
-    const scara_real_t t30 = SCARA_C(-0.325) * (dq[0] * dq[0]);
+    const scara_real_t t29 = SCARA_C(0.275) * t28; /* link j3: motion */
+    const scara_real_t t30 = SCARA_C(-0.325) * (dq[0] * dq[0]); /* link j2: motion */
     const scara_real_t t31 = t17 * t30;
-    const scara_real_t t32 = t29 - t31;
-    const scara_real_t t33 = t15 * t30;
+    const scara_real_t t32 = t29 - t31; /* link j3: motion */
+    const scara_real_t t33 = t15 * t30; /* link j2: motion */
+    /* link j4: force and moment */
     const scara_real_t t34 = parameters[MX4] * (t2 * t32 + t3 * t33) + parameters[MY4] * (t3 * t32
         - t2 * t33);
-    const scara_real_t t35 = dq[3] - t27;
+    const scara_real_t t35 = dq[3] - t27; /* link j4: motion */
     const scara_real_t t36 = t35 * t35;
-    const scara_real_t t37 = parameters[MX4] * t36;
+    const scara_real_t t37 = parameters[MX4] * t36; /* link j4: force and moment */
     const scara_real_t t38 = parameters[MY4] * t36;
-    const scara_real_t t39 = parameters[M3R] * t33 - (t2 * t37 + t3 * t38);
+    const scara_real_t t39 = parameters[M3R] * t33 - (t2 * t37 + t3 * t38); /* link j4: what it passes on */
+    /* link j3: what it passes on */
     const scara_real_t t40 = parameters[MX2R] * t33 + parameters[MY2R] * t31 + (t34 + SCARA_C(0.275) * t39);
-    const scara_real_t t41 = parameters[MX2R] * t28;
+    const scara_real_t t41 = parameters[MX2R] * t28; /* link j2: force and moment */
+    /* link j3: what it passes on */
     const scara_real_t t42 = t41 + (parameters[M3R] * t32 + (t3 * t37 - t2 * t38));
-    const scara_real_t t43 = parameters[MY2R] * t28;
+    const scara_real_t t43 = parameters[MY2R] * t28; /* link j2: force and moment */
+    /* link j2: what it passes on */
     const scara_real_t t44 = t40 + SCARA_C(0.325) * (t15 * t42 + t17 * (t43 + t39));
-    const scara_real_t t45 = scara_sign(dq[0]);
+    const scara_real_t t45 = scara_sign(dq[0]); /* joint j1: coulomb_friction */
     const scara_real_t t46 = SCARA_C(80.0) * (parameters[FV1] * (SCARA_C(-80.0) * dq[0])
         - parameters[FC1] * t45) + t44;
-    const scara_real_t t47 = scara_sign(dq[3]);
+    const scara_real_t t47 = scara_sign(dq[3]); /* joint j4: coulomb_friction */
     const scara_real_t t48 = SCARA_C(20.0) * (parameters[FV4] * (SCARA_C(-20.0) * dq[3])
         - parameters[FC4] * t47) - t34;
     const scara_real_t t49 = SCARA_C(2.0) * input[3] + t48;
-    const scara_real_t t50 = scara_sign(dq[1]);
+    const scara_real_t t50 = scara_sign(dq[1]); /* joint j2: coulomb_friction */
     const scara_real_t t51 = SCARA_C(50.0) * (parameters[FV2] * (SCARA_C(50.0) * dq[1])
         + parameters[FC2] * t50) - t40;
     const scara_real_t t52 = SCARA_C(10.0) * input[1] - t51 + t49 * t7;
@@ -225,7 +234,7 @@ int scara_forward_dynamics_derivatives(
     ddq[0] = t55;
     const scara_real_t t56 = scara_bounded(t52 * t21 + t22 * t55);
     ddq[1] = t56;
-    const scara_real_t t57 = scara_sign(dq[2]);
+    const scara_real_t t57 = scara_sign(dq[2]); /* joint j3: coulomb_friction */
     const scara_real_t
         t58 = SCARA_C(314.1592653589793) * (parameters[FV3] * (SCARA_C(-314.1592653589793) * dq[2])
         - parameters[FC3] * t57) + SCARA_C(9.81) * parameters[M3R];
@@ -236,23 +245,25 @@ int scara_forward_dynamics_derivatives(
     const scara_real_t t61 = scara_bounded(SCARA_C(16.0) * t54);
     const scara_real_t t62 = parameters[MY4] * t35;
     const scara_real_t t63 = parameters[MX4] * t35;
-    const scara_real_t t64 = t3 * t62 + t2 * t63;
-    const scara_real_t t65 = parameters[MY2R] * t27 + t64;
-    const scara_real_t t66 = SCARA_C(0.275) * t27;
+    const scara_real_t t64 = t3 * t62 + t2 * t63; /* link j4: inertia, momentum beyond */
+    const scara_real_t t65 = parameters[MY2R] * t27 + t64; /* link j3: inertia, momentum beyond */
+    const scara_real_t t66 = SCARA_C(0.275) * t27; /* link j3: velocity of its origin */
+    /* link j3: inertia, momentum beyond */
     const scara_real_t t67 = parameters[MX2R] * t27 + (t2 * t62 - t3 * t63 + parameters[M3R] * t66);
-    const scara_real_t t68 = t17 * t14 + t15 * t16;
+    const scara_real_t t68 = t17 * t14 + t15 * t16; /* link j2: column of the mass matrix */
+    /* link j2: inertia, momentum beyond */
     const scara_real_t t69 = SCARA_C(0.325) * (t17 * t65 + t15 * t67) + t68 * (SCARA_C(-0.325) * dq[0]);
-    const scara_real_t t70 = dq[2] * (q[2] * parameters[M3R]);
+    const scara_real_t t70 = dq[2] * (q[2] * parameters[M3R]); /* link j3: inertia, momentum beyond */
     const scara_real_t t71 = t70 + (SCARA_C(0.275) * t64 + (t13 * t66 - t70));
     const scara_real_t t72 = SCARA_C(-4.0e2) * parameters[FV1] + SCARA_C(0.125) * (t71 + t69);
     const scara_real_t t73 = t22 * t54;
     const scara_real_t t74 = scara_bounded(SCARA_C(10.0) * t73);
-    const scara_real_t t75 = SCARA_C(2.0) * t71;
+    const scara_real_t t75 = SCARA_C(2.0) * t71; /* link j2: derivatives */
     const scara_real_t t76 = SCARA_C(-0.65) * dq[0];
     const scara_real_t t77 = SCARA_C(0.1) * (t75 + t68 * t76);
     const scara_real_t t78 = t54 * (t23 + t7 * t22);
     const scara_real_t t79 = SCARA_C(2.0) * t78;
-    const scara_real_t t80 = t13 * (SCARA_C(-0.55) * t27);
+    const scara_real_t t80 = t13 * (SCARA_C(-0.55) * t27); /* link j4: derivatives */
     const scara_real_t t81 = SCARA_C(0.5) * (t80 - (t15 * t4 - t17 * t13) * t76);
     ddq_by_dq[0] = t72 * t61 + t77 * t74 + t81 * t79;
     const scara_real_t t82 = scara_bounded(SCARA_C(16.0) * t73);
@@ -289,6 +300,7 @@ int scara_forward_dynamics_derivatives(
     ddq_by_q[1] = t61 * t103 + t74 * t104 + t79 * t105;
     ddq_by_q[5] = t82 * t103 + t83 * t104 + t85 * t105;
     ddq_by_q[13] = t86 * t103 + t87 * t104 + t88 * t105;
+    /* link j2: derivatives */
     const scara_real_t t106 = SCARA_C(0.325) * (t15 * (SCARA_C(2.0) * t67) + t17 * (SCARA_C(2.0) * t65));
     const scara_real_t t107 = SCARA_C(0.0625) * (t75 + t106);
     const scara_real_t t108 = SCARA_C(-250.0) * parameters[FV2] + SCARA_C(0.2) * t71;
@@ -311,7 +323,7 @@ int scara_forward_dynamics_derivatives(
     ddq_by_q[3] = t61 * t113 + t74 * t114 + t79 * t115;
     ddq_by_q[7] = t82 * t113 + t83 * t114 + t85 * t115;
     ddq_by_q[15] = t86 * t113 + t87 * t114 + t88 * t115;
-    const scara_real_t t116 = SCARA_C(2.0) * t63;
+    const scara_real_t t116 = SCARA_C(2.0) * t63; /* link j4: derivatives */
     const scara_real_t t117 = SCARA_C(-2.0) * t62;
     const scara_real_t t118 = t3 * t117 - t2 * t116;
     const scara_real_t t119 = t15 * (t3 * t116 + t2 * t117) + t17 * t118;

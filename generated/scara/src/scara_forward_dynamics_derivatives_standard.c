@@ -7,7 +7,7 @@
  * Arm scara, description c1d518ff4a0020fb.
  * SPDX-License-Identifier: 0BSD
  *
- * Operations: 445 (270 mul, 175 add, 0 neg), 4 div, 4 trig, 4 other.
+ * Operations: 445 (270 mul, 175 add, 0 neg), 4 div, 4 trig, 4 other calls (sign, select and the like).
  *
  * @param[in]   q             [4]   [rad, rad, m, rad]                                                   joint
  *                                                                                                       coordinates;
@@ -49,7 +49,7 @@
  *                                                                                                       dq; 4
  *                                                                                                       x 4,
  *                                                                                                       row-major
- * @param[out]  ddq_by_input  [16]  [(rad/s^2, rad/s^2, m/s^2, rad/s^2) per (A)]                         d ddq
+ * @param[out]  ddq_by_input  [16]  [(rad/s^2, rad/s^2, m/s^2, rad/s^2) per A]                           d ddq
  *                                                                                                       / d
  *                                                                                                       input;
  *                                                                                                       4 x
@@ -120,11 +120,11 @@
  */
 #include "scara_private.h"
 
-#if SCARA_GENERATION != 0x5A40077AUL
+#if SCARA_GENERATION != 0xC2234E4EUL
 #error "scara.h and scara_forward_dynamics_derivatives_standard.c are of different generations: generate the arm again"
 #endif
 
-int scara_forward_dynamics_derivatives_standard(
+scara_status_t scara_forward_dynamics_derivatives_standard(
     const scara_real_t q[SCARA_N_JOINTS],
     const scara_real_t dq[SCARA_N_JOINTS],
     const scara_real_t input[SCARA_N_JOINTS],
@@ -137,7 +137,7 @@ int scara_forward_dynamics_derivatives_standard(
     enum { XX1 = 0, XY1, XZ1, YY1, YZ1, ZZ1, MX1, MY1, MZ1, M1, XX2, XY2, XZ2, YY2, YZ2, ZZ2, MX2, MY2, MZ2,
         M2, XX3, XY3, XZ3, YY3, YZ3, ZZ3, MX3, MY3, MZ3, M3, XX4, XY4, XZ4, YY4, YZ4, ZZ4, MX4, MY4, MZ4, M4,
         FV1, FC1, IA1, FV2, FC2, IA2, FV3, FC3, IA3, FV4, FC4, IA4 };
-    int status = SCARA_STATUS_OK;
+    scara_status_t status = SCARA_STATUS_OK;
 
     if (!scara_within_joints(q, SCARA_C(1.0e8))
         || !scara_within_joints(dq, SCARA_C(1.0e10))
@@ -157,7 +157,7 @@ int scara_forward_dynamics_derivatives_standard(
     SCARA_SINCOS(q[1], &t18, &t20);
     scara_real_t t3, t4;
     SCARA_SINCOS(q[3], &t3, &t4);
-    const scara_real_t t0 = parameters[M3] + parameters[M4];
+    const scara_real_t t0 = parameters[M3] + parameters[M4]; /* link j4: inertia of it and all beyond */
     const scara_real_t t1 = scara_bounded(t0 + SCARA_C(98696.04401089359) * parameters[IA3]);
     if (!(t1 > SCARA_C(1.0e-12))) {
         scara_zero(ddq, 4);
@@ -174,12 +174,14 @@ int scara_forward_dynamics_derivatives_standard(
         scara_zero(ddq_by_input, 16);
         return SCARA_STATUS_PIVOT;
     }
+    /* link j4: column of the mass matrix */
     const scara_real_t t5 = t4 * parameters[MX4] - t3 * parameters[MY4];
     const scara_real_t t6 = parameters[ZZ4] + SCARA_C(0.275) * t5;
     const scara_real_t t7 = SCARA_C(1.0) / t2;
     const scara_real_t t8 = t6 * t7;
-    const scara_real_t t9 = parameters[MX3] + t5;
-    const scara_real_t t10 = SCARA_C(0.275) * t0;
+    const scara_real_t t9 = parameters[MX3] + t5; /* link j4: inertia of it and all beyond */
+    const scara_real_t t10 = SCARA_C(0.275) * t0; /* link j3: column of the mass matrix */
+    /* link j3: inertia of it and all beyond */
     const scara_real_t t11 = parameters[ZZ2] + (parameters[ZZ3] + parameters[ZZ4] + SCARA_C(0.275) * (t10
         + SCARA_C(2.0) * t9));
     const scara_real_t t12 = t11 + SCARA_C(2.5e3) * parameters[IA2];
@@ -199,17 +201,20 @@ int scara_forward_dynamics_derivatives_standard(
         scara_zero(ddq_by_input, 16);
         return SCARA_STATUS_PIVOT;
     }
+    /* link j4: column of the mass matrix */
     const scara_real_t t15 = t4 * parameters[MY4] + t3 * parameters[MX4];
-    const scara_real_t t16 = parameters[MY3] + t15;
-    const scara_real_t t17 = parameters[MY2] - t16;
+    const scara_real_t t16 = parameters[MY3] + t15; /* link j4: inertia of it and all beyond */
+    const scara_real_t t17 = parameters[MY2] - t16; /* link j3: inertia of it and all beyond */
     const scara_real_t t19 = parameters[MX2] + (t9 + t10);
-    const scara_real_t t21 = t18 * t17 - t20 * t19;
+    const scara_real_t t21 = t18 * t17 - t20 * t19; /* link j2: column of the mass matrix */
+    /* link j4: column of the mass matrix */
     const scara_real_t t22 = t6 + SCARA_C(0.325) * (t18 * t15 + t20 * t5);
     const scara_real_t t23 = SCARA_C(0.325) * t21 - t11 + t22 * t8;
     const scara_real_t t24 = SCARA_C(1.0) / t13;
     const scara_real_t t25 = t23 * t24;
     const scara_real_t t26 = t22 * t7;
-    const scara_real_t t27 = parameters[M2] + t0;
+    const scara_real_t t27 = parameters[M2] + t0; /* link j3: inertia of it and all beyond */
+    /* link j2: inertia of it and all beyond */
     const scara_real_t t28 = parameters[ZZ1] + (t11 + SCARA_C(0.325) * (SCARA_C(0.325) * t27
         + SCARA_C(-2.0) * t21));
     const scara_real_t t29 = t28 + SCARA_C(6.4e3) * parameters[IA1];
@@ -229,40 +234,44 @@ int scara_forward_dynamics_derivatives_standard(
         scara_zero(ddq_by_input, 16);
         return SCARA_STATUS_PIVOT;
     }
-    const scara_real_t t32 = dq[0] + dq[1];
+    const scara_real_t t32 = dq[0] + dq[1]; /* link j2: motion */
     const scara_real_t t33 = t32 * t32;
-    const scara_real_t t34 = SCARA_C(0.275) * t33;
-    const scara_real_t t35 = SCARA_C(0.325) * (dq[0] * dq[0]);
+    const scara_real_t t34 = SCARA_C(0.275) * t33; /* link j3: motion */
+    const scara_real_t t35 = SCARA_C(0.325) * (dq[0] * dq[0]); /* link j2: motion */
     const scara_real_t t36 = t20 * t35;
-    const scara_real_t t37 = t36 + t34;
-    const scara_real_t t38 = t18 * t35;
-    const scara_real_t t39 = t4 * t37 + t3 * t38;
+    const scara_real_t t37 = t36 + t34; /* link j3: motion */
+    const scara_real_t t38 = t18 * t35; /* link j2: motion */
+    const scara_real_t t39 = t4 * t37 + t3 * t38; /* link j4: motion */
     const scara_real_t t40 = t32 - dq[3];
     const scara_real_t t41 = t40 * t40;
-    const scara_real_t t42 = t41 * parameters[MX4];
+    const scara_real_t t42 = t41 * parameters[MX4]; /* link j4: force and moment */
     const scara_real_t t43 = parameters[M4] * t39 + t42;
-    const scara_real_t t44 = t3 * t37 - t4 * t38;
-    const scara_real_t t45 = t41 * parameters[MY4];
+    const scara_real_t t44 = t3 * t37 - t4 * t38; /* link j4: motion */
+    const scara_real_t t45 = t41 * parameters[MY4]; /* link j4: force and moment */
     const scara_real_t t46 = parameters[M4] * t44 - t45;
-    const scara_real_t t47 = t33 * parameters[MX3];
+    const scara_real_t t47 = t33 * parameters[MX3]; /* link j3: force and moment */
+    /* link j4: what it passes on */
     const scara_real_t t48 = parameters[M3] * t37 + t47 + (t4 * t43 + t3 * t46);
-    const scara_real_t t49 = t33 * parameters[MX2];
-    const scara_real_t t50 = t33 * parameters[MY3];
+    const scara_real_t t49 = t33 * parameters[MX2]; /* link j2: force and moment */
+    const scara_real_t t50 = t33 * parameters[MY3]; /* link j3: force and moment */
+    /* link j4: what it passes on */
     const scara_real_t t51 = t4 * t46 - t3 * t43 - (t38 * parameters[M3] + t50);
-    const scara_real_t t52 = t33 * parameters[MY2];
+    const scara_real_t t52 = t33 * parameters[MY2]; /* link j2: force and moment */
+    /* link j2: what it passes on */
     const scara_real_t t53 = t18 * (t36 * parameters[M2] + t49 + t48) + t20 * (t52 - t38 * parameters[M2]
         + t51);
-    const scara_real_t t54 = parameters[MX4] * t44 + parameters[MY4] * t39;
+    const scara_real_t t54 = parameters[MX4] * t44 + parameters[MY4] * t39; /* link j4: force and moment */
+    /* link j3: what it passes on */
     const scara_real_t t55 = parameters[MY3] * t37 - t38 * parameters[MX3] + t54 + SCARA_C(0.275) * t51;
     const scara_real_t t56 = t55 - (t38 * parameters[MX2] + t36 * parameters[MY2]);
-    const scara_real_t t57 = scara_sign(dq[0]);
+    const scara_real_t t57 = scara_sign(dq[0]); /* joint j1: coulomb_friction */
     const scara_real_t t58 = SCARA_C(80.0) * (SCARA_C(-80.0) * dq[0] * parameters[FV1]
         - t57 * parameters[FC1]) + (t56 + SCARA_C(0.325) * t53);
-    const scara_real_t t59 = scara_sign(dq[3]);
+    const scara_real_t t59 = scara_sign(dq[3]); /* joint j4: coulomb_friction */
     const scara_real_t t60 = SCARA_C(20.0) * (SCARA_C(-20.0) * dq[3] * parameters[FV4]
         - t59 * parameters[FC4]) - t54;
     const scara_real_t t61 = SCARA_C(2.0) * input[3] + t60;
-    const scara_real_t t62 = scara_sign(dq[1]);
+    const scara_real_t t62 = scara_sign(dq[1]); /* joint j2: coulomb_friction */
     const scara_real_t t63 = SCARA_C(50.0) * (SCARA_C(50.0) * dq[1] * parameters[FV2] + t62 * parameters[FC2])
         - t56;
     const scara_real_t t64 = SCARA_C(10.0) * input[1] - t63 + t61 * t8;
@@ -272,7 +281,7 @@ int scara_forward_dynamics_derivatives_standard(
     ddq[0] = t67;
     const scara_real_t t68 = scara_bounded(t64 * t24 + t25 * t67);
     ddq[1] = t68;
-    const scara_real_t t69 = scara_sign(dq[2]);
+    const scara_real_t t69 = scara_sign(dq[2]); /* joint j3: coulomb_friction */
     const scara_real_t
         t70 = SCARA_C(314.1592653589793) * (SCARA_C(-314.1592653589793) * dq[2] * parameters[FV3]
         - t69 * parameters[FC3]) + (SCARA_C(9.81) * parameters[M3] + SCARA_C(9.81) * parameters[M4]);
@@ -283,24 +292,28 @@ int scara_forward_dynamics_derivatives_standard(
     const scara_real_t t73 = scara_bounded(SCARA_C(16.0) * t66);
     const scara_real_t t74 = t40 * parameters[MY4];
     const scara_real_t t75 = t40 * parameters[MX4];
-    const scara_real_t t76 = SCARA_C(0.275) * t32;
+    const scara_real_t t76 = SCARA_C(0.275) * t32; /* link j3: velocity of its origin */
+    /* link j3: inertia, momentum beyond */
     const scara_real_t t77 = t32 * parameters[MX3] + (t4 * t75 - t3 * t74) + t0 * t76;
     const scara_real_t t78 = t32 * parameters[MX2] + t77;
+    /* link j4: inertia, momentum beyond */
     const scara_real_t t79 = t32 * parameters[MY3] + (t4 * t74 + t3 * t75);
-    const scara_real_t t80 = t32 * parameters[MY2] - t79;
-    const scara_real_t t81 = t20 * t17 + t18 * t19;
+    const scara_real_t t80 = t32 * parameters[MY2] - t79; /* link j3: inertia, momentum beyond */
+    const scara_real_t t81 = t20 * t17 + t18 * t19; /* link j2: column of the mass matrix */
+    /* link j2: inertia, momentum beyond */
     const scara_real_t t82 = SCARA_C(0.325) * (t20 * t80 + t18 * t78) + t81 * (SCARA_C(-0.325) * dq[0]);
+    /* link j3: inertia, momentum beyond */
     const scara_real_t t83 = dq[2] * (parameters[MZ3] + parameters[MZ4] + q[2] * t0);
     const scara_real_t t84 = t83 + (SCARA_C(-0.275) * t79 + (t16 * t76 - t83));
     const scara_real_t t85 = SCARA_C(-4.0e2) * parameters[FV1] + SCARA_C(0.125) * (t84 + t82);
     const scara_real_t t86 = t25 * t66;
     const scara_real_t t87 = scara_bounded(SCARA_C(10.0) * t86);
-    const scara_real_t t88 = SCARA_C(2.0) * t84;
+    const scara_real_t t88 = SCARA_C(2.0) * t84; /* link j2: derivatives */
     const scara_real_t t89 = SCARA_C(-0.65) * dq[0];
     const scara_real_t t90 = SCARA_C(0.1) * (t88 + t81 * t89);
     const scara_real_t t91 = t66 * (t26 + t8 * t25);
     const scara_real_t t92 = SCARA_C(2.0) * t91;
-    const scara_real_t t93 = t15 * (SCARA_C(-0.55) * t32);
+    const scara_real_t t93 = t15 * (SCARA_C(-0.55) * t32); /* link j4: derivatives */
     const scara_real_t t94 = SCARA_C(0.5) * (t93 - (t18 * t5 - t20 * t15) * t89);
     ddq_by_dq[0] = t85 * t73 + t90 * t87 + t94 * t92;
     const scara_real_t t95 = scara_bounded(SCARA_C(16.0) * t86);
@@ -341,6 +354,7 @@ int scara_forward_dynamics_derivatives_standard(
     ddq_by_q[1] = t73 * t120 + t87 * t121 + t92 * t122;
     ddq_by_q[5] = t95 * t120 + t96 * t121 + t98 * t122;
     ddq_by_q[13] = t99 * t120 + t100 * t121 + t101 * t122;
+    /* link j2: derivatives */
     const scara_real_t t123 = SCARA_C(0.325) * (t18 * (SCARA_C(2.0) * t78) + t20 * (SCARA_C(2.0) * t80));
     const scara_real_t t124 = SCARA_C(0.0625) * (t88 + t123);
     const scara_real_t t125 = SCARA_C(-250.0) * parameters[FV2] + SCARA_C(0.2) * t84;
@@ -364,7 +378,7 @@ int scara_forward_dynamics_derivatives_standard(
     ddq_by_q[3] = t73 * t132 + t87 * t133 + t92 * t134;
     ddq_by_q[7] = t95 * t132 + t96 * t133 + t98 * t134;
     ddq_by_q[15] = t99 * t132 + t100 * t133 + t101 * t134;
-    const scara_real_t t135 = SCARA_C(-2.0) * t75;
+    const scara_real_t t135 = SCARA_C(-2.0) * t75; /* link j4: derivatives */
     const scara_real_t t136 = SCARA_C(2.0) * t74;
     const scara_real_t t137 = t4 * t136 - t3 * t135;
     const scara_real_t t138 = t18 * (t4 * t135 + t3 * t136) + t20 * t137;

@@ -6,7 +6,7 @@
  * Arm scara, description c1d518ff4a0020fb.
  * SPDX-License-Identifier: 0BSD
  *
- * Operations: 174 (99 mul, 75 add, 0 neg), 4 div, 4 trig, 4 other.
+ * Operations: 174 (99 mul, 75 add, 0 neg), 4 div, 4 trig, 4 other calls (sign, select and the like).
  *
  * @param[in]   q           [4]   [rad, rad, m, rad]                  joint coordinates; norm at most 10000
  * @param[in]   dq          [4]   [rad/s, rad/s, m/s, rad/s]          joint velocities; norm at most 100000
@@ -79,11 +79,11 @@
  */
 #include "scara_private.h"
 
-#if SCARA_GENERATION != 0x5A40077AUL
+#if SCARA_GENERATION != 0xC2234E4EUL
 #error "scara.h and scara_forward_dynamics_standard.c are of different generations: generate the arm again"
 #endif
 
-int scara_forward_dynamics_standard(
+scara_status_t scara_forward_dynamics_standard(
     const scara_real_t q[SCARA_N_JOINTS],
     const scara_real_t dq[SCARA_N_JOINTS],
     const scara_real_t input[SCARA_N_JOINTS],
@@ -93,7 +93,7 @@ int scara_forward_dynamics_standard(
     enum { XX1 = 0, XY1, XZ1, YY1, YZ1, ZZ1, MX1, MY1, MZ1, M1, XX2, XY2, XZ2, YY2, YZ2, ZZ2, MX2, MY2, MZ2,
         M2, XX3, XY3, XZ3, YY3, YZ3, ZZ3, MX3, MY3, MZ3, M3, XX4, XY4, XZ4, YY4, YZ4, ZZ4, MX4, MY4, MZ4, M4,
         FV1, FC1, IA1, FV2, FC2, IA2, FV3, FC3, IA3, FV4, FC4, IA4 };
-    int status = SCARA_STATUS_OK;
+    scara_status_t status = SCARA_STATUS_OK;
 
     if (!scara_within_joints(q, SCARA_C(1.0e8))
         || !scara_within_joints(dq, SCARA_C(1.0e10))
@@ -110,7 +110,7 @@ int scara_forward_dynamics_standard(
     SCARA_SINCOS(q[1], &t16, &t17);
     scara_real_t t3, t4;
     SCARA_SINCOS(q[3], &t3, &t4);
-    const scara_real_t t0 = parameters[M3] + parameters[M4];
+    const scara_real_t t0 = parameters[M3] + parameters[M4]; /* link j4: inertia of it and all beyond */
     const scara_real_t t1 = scara_bounded(t0 + SCARA_C(98696.04401089359) * parameters[IA3]);
     if (!(t1 > SCARA_C(1.0e-12))) {
         scara_zero(out, 4);
@@ -121,12 +121,14 @@ int scara_forward_dynamics_standard(
         scara_zero(out, 4);
         return SCARA_STATUS_PIVOT;
     }
+    /* link j4: column of the mass matrix */
     const scara_real_t t5 = t4 * parameters[MX4] - t3 * parameters[MY4];
     const scara_real_t t6 = parameters[ZZ4] + SCARA_C(0.275) * t5;
     const scara_real_t t7 = SCARA_C(1.0) / t2;
     const scara_real_t t8 = t6 * t7;
-    const scara_real_t t9 = parameters[MX3] + t5;
-    const scara_real_t t10 = SCARA_C(0.275) * t0;
+    const scara_real_t t9 = parameters[MX3] + t5; /* link j4: inertia of it and all beyond */
+    const scara_real_t t10 = SCARA_C(0.275) * t0; /* link j3: column of the mass matrix */
+    /* link j3: inertia of it and all beyond */
     const scara_real_t t11 = parameters[ZZ2] + (parameters[ZZ3] + parameters[ZZ4] + SCARA_C(0.275) * (t10
         + SCARA_C(2.0) * t9));
     const scara_real_t t12 = t11 + SCARA_C(2.5e3) * parameters[IA2];
@@ -140,14 +142,18 @@ int scara_forward_dynamics_standard(
         scara_zero(out, 4);
         return SCARA_STATUS_PIVOT;
     }
+    /* link j4: column of the mass matrix */
     const scara_real_t t15 = t4 * parameters[MY4] + t3 * parameters[MX4];
+    /* link j2: column of the mass matrix */
     const scara_real_t t18 = t16 * (parameters[MY2] - (parameters[MY3] + t15)) - t17 * (parameters[MX2] + (t9
         + t10));
+    /* link j4: column of the mass matrix */
     const scara_real_t t19 = t6 + SCARA_C(0.325) * (t16 * t15 + t17 * t5);
     const scara_real_t t20 = SCARA_C(0.325) * t18 - t11 + t19 * t8;
     const scara_real_t t21 = SCARA_C(1.0) / t13;
     const scara_real_t t22 = t20 * t21;
     const scara_real_t t23 = t19 * t7;
+    /* link j2: inertia of it and all beyond */
     const scara_real_t t24 = t11 + SCARA_C(0.325) * (SCARA_C(0.325) * (parameters[M2] + t0)
         + SCARA_C(-2.0) * t18);
     const scara_real_t t25 = parameters[ZZ1] + t24 + SCARA_C(6.4e3) * parameters[IA1];
@@ -161,33 +167,36 @@ int scara_forward_dynamics_standard(
         scara_zero(out, 4);
         return SCARA_STATUS_PIVOT;
     }
-    const scara_real_t t28 = dq[0] + dq[1];
+    const scara_real_t t28 = dq[0] + dq[1]; /* link j2: motion */
     const scara_real_t t29 = t28 * t28;
     const scara_real_t t30 = SCARA_C(0.325) * (dq[0] * dq[0]);
     const scara_real_t t31 = t17 * t30;
-    const scara_real_t t32 = t31 + SCARA_C(0.275) * t29;
-    const scara_real_t t33 = t16 * t30;
-    const scara_real_t t34 = t4 * t32 + t3 * t33;
+    const scara_real_t t32 = t31 + SCARA_C(0.275) * t29; /* link j3: motion */
+    const scara_real_t t33 = t16 * t30; /* link j2: motion */
+    const scara_real_t t34 = t4 * t32 + t3 * t33; /* link j4: motion */
     const scara_real_t t35 = t28 - dq[3];
     const scara_real_t t36 = t35 * t35;
-    const scara_real_t t37 = parameters[M4] * t34 + t36 * parameters[MX4];
-    const scara_real_t t38 = t3 * t32 - t4 * t33;
-    const scara_real_t t39 = parameters[M4] * t38 - t36 * parameters[MY4];
+    const scara_real_t t37 = parameters[M4] * t34 + t36 * parameters[MX4]; /* link j4: force and moment */
+    const scara_real_t t38 = t3 * t32 - t4 * t33; /* link j4: motion */
+    const scara_real_t t39 = parameters[M4] * t38 - t36 * parameters[MY4]; /* link j4: force and moment */
+    /* link j4: what it passes on */
     const scara_real_t t40 = parameters[M3] * t32 + t29 * parameters[MX3] + (t4 * t37 + t3 * t39);
     const scara_real_t t41 = t4 * t39 - t3 * t37 - (t33 * parameters[M3] + t29 * parameters[MY3]);
+    /* link j2: what it passes on */
     const scara_real_t t42 = t16 * (t31 * parameters[M2] + t29 * parameters[MX2] + t40)
         + t17 * (t29 * parameters[MY2] - t33 * parameters[M2] + t41);
-    const scara_real_t t43 = parameters[MX4] * t38 + parameters[MY4] * t34;
+    const scara_real_t t43 = parameters[MX4] * t38 + parameters[MY4] * t34; /* link j4: force and moment */
+    /* link j3: what it passes on */
     const scara_real_t t44 = parameters[MY3] * t32 - t33 * parameters[MX3] + t43 + SCARA_C(0.275) * t41;
     const scara_real_t t45 = t44 - (t33 * parameters[MX2] + t31 * parameters[MY2]);
-    const scara_real_t t46 = scara_sign(dq[0]);
+    const scara_real_t t46 = scara_sign(dq[0]); /* joint j1: coulomb_friction */
     const scara_real_t t47 = SCARA_C(80.0) * (SCARA_C(-80.0) * dq[0] * parameters[FV1]
         - t46 * parameters[FC1]) + (t45 + SCARA_C(0.325) * t42);
-    const scara_real_t t48 = scara_sign(dq[3]);
+    const scara_real_t t48 = scara_sign(dq[3]); /* joint j4: coulomb_friction */
     const scara_real_t t49 = SCARA_C(20.0) * (SCARA_C(-20.0) * dq[3] * parameters[FV4]
         - t48 * parameters[FC4]) - t43;
     const scara_real_t t50 = SCARA_C(2.0) * input[3] + t49;
-    const scara_real_t t51 = scara_sign(dq[1]);
+    const scara_real_t t51 = scara_sign(dq[1]); /* joint j2: coulomb_friction */
     const scara_real_t t52 = SCARA_C(50.0) * (SCARA_C(50.0) * dq[1] * parameters[FV2] + t51 * parameters[FC2])
         - t45;
     const scara_real_t t53 = SCARA_C(10.0) * input[1] - t52 + t50 * t8;
@@ -197,7 +206,7 @@ int scara_forward_dynamics_standard(
     out[0] = t56;
     const scara_real_t t57 = scara_bounded(t53 * t21 + t22 * t56);
     out[1] = t57;
-    const scara_real_t t58 = scara_sign(dq[2]);
+    const scara_real_t t58 = scara_sign(dq[2]); /* joint j3: coulomb_friction */
     const scara_real_t
         t59 = SCARA_C(314.1592653589793) * (SCARA_C(-314.1592653589793) * dq[2] * parameters[FV3]
         - t58 * parameters[FC3]) + (SCARA_C(9.81) * parameters[M3] + SCARA_C(9.81) * parameters[M4]);

@@ -24,15 +24,15 @@
  */
 #include "scara_private.h"
 
-#if SCARA_GENERATION != 0x5A40077AUL
+#if SCARA_GENERATION != 0xC2234E4EUL
 #error "scara.h and scara_forward_kinematics.c are of different generations: generate the arm again"
 #endif
 
-int scara_forward_kinematics(
+scara_status_t scara_forward_kinematics(
     const scara_real_t q[SCARA_N_JOINTS],
     scara_real_t out[16 * SCARA_N_LINKS])
 {
-    int status = SCARA_STATUS_OK;
+    scara_status_t status = SCARA_STATUS_OK;
 
     if (!scara_within_joints(q, SCARA_C(1.0e8))) {
         status |= SCARA_STATUS_INPUT;
@@ -55,7 +55,7 @@ int scara_forward_kinematics(
     out[10] = SCARA_C(1.0);
     out[11] = SCARA_C(0.4);
     out[15] = SCARA_C(1.0);
-    const scara_real_t t4 = t0 * t2 - t1 * t3;
+    const scara_real_t t4 = t0 * t2 - t1 * t3; /* link j2: pose */
     out[16] = t4;
     const scara_real_t t5 = t0 * t3 + t1 * t2;
     out[17] = -t5;
@@ -70,7 +70,7 @@ int scara_forward_kinematics(
     out[31] = SCARA_C(1.0);
     out[32] = t4;
     out[33] = t5;
-    const scara_real_t t8 = t6 + SCARA_C(0.275) * t4;
+    const scara_real_t t8 = t6 + SCARA_C(0.275) * t4; /* link j3: pose */
     out[35] = t8;
     out[36] = t5;
     out[37] = -t4;
@@ -80,7 +80,7 @@ int scara_forward_kinematics(
     const scara_real_t t10 = SCARA_C(0.4) - q[2];
     out[43] = t10;
     out[47] = SCARA_C(1.0);
-    const scara_real_t t13 = t11 * t4 + t12 * t5;
+    const scara_real_t t13 = t11 * t4 + t12 * t5; /* link j4: pose */
     out[48] = t13;
     const scara_real_t t14 = t11 * t5 - t12 * t4;
     out[49] = t14;

@@ -43,18 +43,18 @@
  */
 #include "scara_private.h"
 
-#if SCARA_GENERATION != 0x5A40077AUL
+#if SCARA_GENERATION != 0xC2234E4EUL
 #error "scara.h and scara_gravity.c are of different generations: generate the arm again"
 #endif
 
-int scara_gravity(
+scara_status_t scara_gravity(
     const scara_real_t q[SCARA_N_JOINTS],
     const scara_real_t parameters[SCARA_N_PARAMETERS],
     scara_real_t out[SCARA_N_JOINTS])
 {
     enum { ZZ1R = 0, ZZ2R, MX2R, MY2R, M3R, ZZ4, MX4, MY4, FV1, FC1, FV2, FC2, IA2, FV3, FC3, IA3, FV4, FC4,
         IA4 };
-    int status = SCARA_STATUS_OK;
+    scara_status_t status = SCARA_STATUS_OK;
 
     if (!scara_within_joints(q, SCARA_C(1.0e8))
         || !SCARA_PARAMETERS_USABLE(scara_within(parameters, 19, SCARA_C(1.0e18)))) {

@@ -76,11 +76,11 @@
  */
 #include "scara_private.h"
 
-#if SCARA_GENERATION != 0x5A40077AUL
+#if SCARA_GENERATION != 0xC2234E4EUL
 #error "scara.h and scara_gravity_standard.c are of different generations: generate the arm again"
 #endif
 
-int scara_gravity_standard(
+scara_status_t scara_gravity_standard(
     const scara_real_t q[SCARA_N_JOINTS],
     const scara_real_t parameters[SCARA_N_STANDARD_PARAMETERS],
     scara_real_t out[SCARA_N_JOINTS])
@@ -88,7 +88,7 @@ int scara_gravity_standard(
     enum { XX1 = 0, XY1, XZ1, YY1, YZ1, ZZ1, MX1, MY1, MZ1, M1, XX2, XY2, XZ2, YY2, YZ2, ZZ2, MX2, MY2, MZ2,
         M2, XX3, XY3, XZ3, YY3, YZ3, ZZ3, MX3, MY3, MZ3, M3, XX4, XY4, XZ4, YY4, YZ4, ZZ4, MX4, MY4, MZ4, M4,
         FV1, FC1, IA1, FV2, FC2, IA2, FV3, FC3, IA3, FV4, FC4, IA4 };
-    int status = SCARA_STATUS_OK;
+    scara_status_t status = SCARA_STATUS_OK;
 
     if (!scara_within_joints(q, SCARA_C(1.0e8))
         || !SCARA_PARAMETERS_USABLE(scara_within(parameters, 52, SCARA_C(1.0e18)))) {

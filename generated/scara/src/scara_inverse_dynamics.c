@@ -6,7 +6,7 @@
  * Arm scara, description c1d518ff4a0020fb.
  * SPDX-License-Identifier: 0BSD
  *
- * Operations: 108 (67 mul, 41 add, 0 neg), 4 trig, 4 other.
+ * Operations: 108 (67 mul, 41 add, 0 neg), 4 trig, 4 other calls (sign, select and the like).
  *
  * @param[in]   q           [4]   [rad, rad, m, rad]                  joint coordinates; norm at most 10000
  * @param[in]   dq          [4]   [rad/s, rad/s, m/s, rad/s]          joint velocities; norm at most 100000
@@ -46,11 +46,11 @@
  */
 #include "scara_private.h"
 
-#if SCARA_GENERATION != 0x5A40077AUL
+#if SCARA_GENERATION != 0xC2234E4EUL
 #error "scara.h and scara_inverse_dynamics.c are of different generations: generate the arm again"
 #endif
 
-int scara_inverse_dynamics(
+scara_status_t scara_inverse_dynamics(
     const scara_real_t q[SCARA_N_JOINTS],
     const scara_real_t dq[SCARA_N_JOINTS],
     const scara_real_t ddq[SCARA_N_JOINTS],
@@ -59,7 +59,7 @@ int scara_inverse_dynamics(
 {
     enum { ZZ1R = 0, ZZ2R, MX2R, MY2R, M3R, ZZ4, MX4, MY4, FV1, FC1, FV2, FC2, IA2, FV3, FC3, IA3, FV4, FC4,
         IA4 };
-    int status = SCARA_STATUS_OK;
+    scara_status_t status = SCARA_STATUS_OK;
 
     if (!scara_within_joints(q, SCARA_C(1.0e8))
         || !scara_within_joints(dq, SCARA_C(1.0e10))
@@ -76,44 +76,47 @@ int scara_inverse_dynamics(
     SCARA_SINCOS(q[1], &t5, &t3);
     scara_real_t t8, t12;
     SCARA_SINCOS(q[3], &t8, &t12);
-    const scara_real_t t0 = dq[0] + dq[1];
+    const scara_real_t t0 = dq[0] + dq[1]; /* link j2: motion */
     const scara_real_t t1 = t0 * t0;
     const scara_real_t t2 = SCARA_C(0.325) * (dq[0] * dq[0]);
     const scara_real_t t4 = SCARA_C(0.325) * ddq[0];
     const scara_real_t t6 = t5 * t4 - t3 * t2;
-    const scara_real_t t7 = SCARA_C(-0.275) * t1 + t6;
-    const scara_real_t t9 = t5 * t2 + t3 * t4;
+    const scara_real_t t7 = SCARA_C(-0.275) * t1 + t6; /* link j3: motion */
+    const scara_real_t t9 = t5 * t2 + t3 * t4; /* link j2: motion */
     const scara_real_t t10 = ddq[0] + ddq[1];
-    const scara_real_t t11 = t9 + SCARA_C(0.275) * t10;
+    const scara_real_t t11 = t9 + SCARA_C(0.275) * t10; /* link j3: motion */
+    /* link j4: force and moment */
     const scara_real_t t13 = parameters[MX4] * (t8 * t7 + t12 * t11) + parameters[MY4] * (t12 * t7
         - t8 * t11);
-    const scara_real_t t14 = t10 - ddq[3];
-    const scara_real_t t15 = parameters[ZZ4] * t14 + t13;
-    const scara_real_t t16 = dq[3] - t0;
+    const scara_real_t t14 = t10 - ddq[3]; /* link j4: motion */
+    const scara_real_t t15 = parameters[ZZ4] * t14 + t13; /* link j4: force and moment */
+    const scara_real_t t16 = dq[3] - t0; /* link j4: motion */
     const scara_real_t t17 = t16 * t16;
-    const scara_real_t t18 = parameters[MX4] * t17 - parameters[MY4] * t14;
+    const scara_real_t t18 = parameters[MX4] * t17 - parameters[MY4] * t14; /* link j4: force and moment */
     const scara_real_t t19 = parameters[MY4] * t17 + parameters[MX4] * t14;
-    const scara_real_t t20 = parameters[M3R] * t11 + (t8 * t18 + t12 * t19);
+    const scara_real_t t20 = parameters[M3R] * t11 + (t8 * t18 + t12 * t19); /* link j4: what it passes on */
+    /* link j3: what it passes on */
     const scara_real_t t21 = parameters[ZZ2R] * t10 + (parameters[MX2R] * t9 - parameters[MY2R] * t6) + (t15
         + SCARA_C(0.275) * t20);
     const scara_real_t t22 = parameters[M3R] * t7 + (t8 * t19 - t12 * t18) - (parameters[MX2R] * t1
         + parameters[MY2R] * t10);
+    /* link j2: what it passes on */
     const scara_real_t t23 = t5 * t22 + t3 * (parameters[MX2R] * t10 - parameters[MY2R] * t1 + t20);
-    const scara_real_t t24 = scara_sign(dq[0]);
+    const scara_real_t t24 = scara_sign(dq[0]); /* joint j1: coulomb_friction */
     const scara_real_t t25 = SCARA_C(5.0) * (parameters[FV1] * (SCARA_C(80.0) * dq[0])
         + parameters[FC1] * t24) + SCARA_C(0.0625) * (parameters[ZZ1R] * ddq[0] + (t21
         + SCARA_C(0.325) * t23));
     out[0] = t25;
-    const scara_real_t t26 = scara_sign(dq[1]);
+    const scara_real_t t26 = scara_sign(dq[1]); /* joint j2: coulomb_friction */
     const scara_real_t t27 = parameters[FV2] * (SCARA_C(50.0) * dq[1]) + parameters[FC2] * t26
         + parameters[IA2] * (SCARA_C(50.0) * ddq[1]);
     out[1] = SCARA_C(5.0) * t27 + SCARA_C(0.1) * t21;
-    const scara_real_t t28 = scara_sign(dq[2]);
+    const scara_real_t t28 = scara_sign(dq[2]); /* joint j3: coulomb_friction */
     const scara_real_t t29 = parameters[FV3] * (SCARA_C(314.1592653589793) * dq[2]) + parameters[FC3] * t28
         + parameters[IA3] * (SCARA_C(314.1592653589793) * ddq[2]);
     out[2] = SCARA_C(10.0) * t29 + SCARA_C(0.03183098861837907) * (parameters[M3R] * (ddq[2]
         - SCARA_C(9.81)));
-    const scara_real_t t30 = scara_sign(dq[3]);
+    const scara_real_t t30 = scara_sign(dq[3]); /* joint j4: coulomb_friction */
     const scara_real_t t31 = parameters[FV4] * (SCARA_C(20.0) * dq[3]) + parameters[FC4] * t30
         + parameters[IA4] * (SCARA_C(20.0) * ddq[3]);
     out[3] = SCARA_C(10.0) * t31 + SCARA_C(-0.5) * t15;

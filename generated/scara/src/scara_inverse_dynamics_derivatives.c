@@ -7,24 +7,24 @@
  * Arm scara, description c1d518ff4a0020fb.
  * SPDX-License-Identifier: 0BSD
  *
- * Operations: 267 (174 mul, 93 add, 0 neg), 4 trig, 4 other.
+ * Operations: 267 (174 mul, 93 add, 0 neg), 4 trig, 4 other calls (sign, select and the like).
  *
- * @param[in]   q             [4]   [rad, rad, m, rad]                            joint coordinates; norm at
- *                                                                                most 10000
- * @param[in]   dq            [4]   [rad/s, rad/s, m/s, rad/s]                    joint velocities; norm at
- *                                                                                most 100000
- * @param[in]   ddq           [4]   [rad/s^2, rad/s^2, m/s^2, rad/s^2]            joint accelerations; norm at
- *                                                                                most 1e+08
- * @param[in]   parameters    [19]                                                base parameters; norm at
- *                                                                                most 1e+09
- * @param[out]  input         [4]   [A]                                           inputs: motor currents,
- *                                                                                efforts where undriven
- * @param[out]  input_by_q    [16]  [(A) per (rad, rad, m, rad)]                  d input / d q; 4 x 4,
- *                                                                                row-major
- * @param[out]  input_by_dq   [16]  [(A) per (rad/s, rad/s, m/s, rad/s)]          d input / d dq; 4 x 4,
- *                                                                                row-major
- * @param[out]  input_by_ddq  [16]  [(A) per (rad/s^2, rad/s^2, m/s^2, rad/s^2)]  d input / d ddq; 4 x 4,
- *                                                                                row-major
+ * @param[in]   q             [4]   [rad, rad, m, rad]                          joint coordinates; norm at
+ *                                                                              most 10000
+ * @param[in]   dq            [4]   [rad/s, rad/s, m/s, rad/s]                  joint velocities; norm at most
+ *                                                                              100000
+ * @param[in]   ddq           [4]   [rad/s^2, rad/s^2, m/s^2, rad/s^2]          joint accelerations; norm at
+ *                                                                              most 1e+08
+ * @param[in]   parameters    [19]                                              base parameters; norm at most
+ *                                                                              1e+09
+ * @param[out]  input         [4]   [A]                                         inputs: motor currents,
+ *                                                                              efforts where undriven
+ * @param[out]  input_by_q    [16]  [A per (rad, rad, m, rad)]                  d input / d q; 4 x 4,
+ *                                                                              row-major
+ * @param[out]  input_by_dq   [16]  [A per (rad/s, rad/s, m/s, rad/s)]          d input / d dq; 4 x 4,
+ *                                                                              row-major
+ * @param[out]  input_by_ddq  [16]  [A per (rad/s^2, rad/s^2, m/s^2, rad/s^2)]  d input / d ddq; 4 x 4,
+ *                                                                              row-major
  *
  * Coordinates:
  *
@@ -57,11 +57,11 @@
  */
 #include "scara_private.h"
 
-#if SCARA_GENERATION != 0x5A40077AUL
+#if SCARA_GENERATION != 0xC2234E4EUL
 #error "scara.h and scara_inverse_dynamics_derivatives.c are of different generations: generate the arm again"
 #endif
 
-int scara_inverse_dynamics_derivatives(
+scara_status_t scara_inverse_dynamics_derivatives(
     const scara_real_t q[SCARA_N_JOINTS],
     const scara_real_t dq[SCARA_N_JOINTS],
     const scara_real_t ddq[SCARA_N_JOINTS],
@@ -73,7 +73,7 @@ int scara_inverse_dynamics_derivatives(
 {
     enum { ZZ1R = 0, ZZ2R, MX2R, MY2R, M3R, ZZ4, MX4, MY4, FV1, FC1, FV2, FC2, IA2, FV3, FC3, IA3, FV4, FC4,
         IA4 };
-    int status = SCARA_STATUS_OK;
+    scara_status_t status = SCARA_STATUS_OK;
 
     if (!scara_within_joints(q, SCARA_C(1.0e8))
         || !scara_within_joints(dq, SCARA_C(1.0e10))
@@ -93,82 +93,92 @@ int scara_inverse_dynamics_derivatives(
     SCARA_SINCOS(q[1], &t5, &t3);
     scara_real_t t8, t12;
     SCARA_SINCOS(q[3], &t8, &t12);
-    const scara_real_t t0 = dq[0] + dq[1];
+    const scara_real_t t0 = dq[0] + dq[1]; /* link j2: motion */
     const scara_real_t t1 = t0 * t0;
     const scara_real_t t2 = SCARA_C(0.325) * (dq[0] * dq[0]);
     const scara_real_t t4 = SCARA_C(-0.325) * ddq[0];
     const scara_real_t t6 = t3 * t2 + t5 * t4;
-    const scara_real_t t7 = SCARA_C(-0.275) * t1 - t6;
-    const scara_real_t t9 = t3 * t4 - t5 * t2;
+    const scara_real_t t7 = SCARA_C(-0.275) * t1 - t6; /* link j3: motion */
+    const scara_real_t t9 = t3 * t4 - t5 * t2; /* link j2: motion */
     const scara_real_t t10 = ddq[0] + ddq[1];
-    const scara_real_t t11 = t9 + SCARA_C(-0.275) * t10;
-    const scara_real_t t13 = t12 * t11 - t8 * t7;
+    const scara_real_t t11 = t9 + SCARA_C(-0.275) * t10; /* link j3: motion */
+    const scara_real_t t13 = t12 * t11 - t8 * t7; /* link j4: motion */
     const scara_real_t t14 = t12 * t7 + t8 * t11;
     const scara_real_t t15 = t10 - ddq[3];
+    /* link j4: force and moment */
     const scara_real_t t16 = parameters[ZZ4] * t15 + (parameters[MY4] * t14 - parameters[MX4] * t13);
-    const scara_real_t t17 = t0 - dq[3];
+    const scara_real_t t17 = t0 - dq[3]; /* link j4: motion */
     const scara_real_t t18 = t17 * t17;
-    const scara_real_t t19 = parameters[MY4] * t15 - parameters[MX4] * t18;
+    const scara_real_t t19 = parameters[MY4] * t15 - parameters[MX4] * t18; /* link j4: force and moment */
     const scara_real_t t20 = parameters[MY4] * t18 + parameters[MX4] * t15;
-    const scara_real_t t21 = t8 * t19 - t12 * t20;
+    const scara_real_t t21 = t8 * t19 - t12 * t20; /* link j4: what it passes on */
     const scara_real_t t22 = parameters[M3R] * t11 + t21;
+    /* link j3: what it passes on */
     const scara_real_t t23 = parameters[ZZ2R] * t10 + (parameters[MY2R] * t6 - parameters[MX2R] * t9) + (t16
         + SCARA_C(-0.275) * t22);
-    const scara_real_t t24 = t12 * t19 + t8 * t20;
+    const scara_real_t t24 = t12 * t19 + t8 * t20; /* link j4: what it passes on */
+    /* link j3: what it passes on */
     const scara_real_t t25 = parameters[M3R] * t7 + t24 - (parameters[MX2R] * t1 + parameters[MY2R] * t10);
     const scara_real_t t26 = parameters[MY2R] * t1 - parameters[MX2R] * t10 + t22;
+    /* link j2: what it passes on */
     const scara_real_t t27 = parameters[ZZ1R] * ddq[0] + (t23 + SCARA_C(0.325) * (t5 * t25 - t3 * t26));
-    const scara_real_t t28 = scara_sign(dq[0]);
+    const scara_real_t t28 = scara_sign(dq[0]); /* joint j1: coulomb_friction */
     const scara_real_t t29 = SCARA_C(5.0) * (parameters[FV1] * (SCARA_C(80.0) * dq[0])
         + parameters[FC1] * t28) + SCARA_C(0.0625) * t27;
     input[0] = t29;
-    const scara_real_t t30 = scara_sign(dq[1]);
+    const scara_real_t t30 = scara_sign(dq[1]); /* joint j2: coulomb_friction */
     const scara_real_t t31 = parameters[FV2] * (SCARA_C(50.0) * dq[1]) + parameters[FC2] * t30
         + parameters[IA2] * (SCARA_C(50.0) * ddq[1]);
     input[1] = SCARA_C(5.0) * t31 + SCARA_C(0.1) * t23;
-    const scara_real_t t32 = scara_sign(dq[2]);
+    const scara_real_t t32 = scara_sign(dq[2]); /* joint j3: coulomb_friction */
     const scara_real_t t33 = parameters[FV3] * (SCARA_C(314.1592653589793) * dq[2]) + parameters[FC3] * t32
         + parameters[IA3] * (SCARA_C(314.1592653589793) * ddq[2]);
     input[2] = SCARA_C(10.0) * t33 + SCARA_C(0.03183098861837907) * (parameters[M3R] * (ddq[2]
         - SCARA_C(9.81)));
-    const scara_real_t t34 = scara_sign(dq[3]);
+    const scara_real_t t34 = scara_sign(dq[3]); /* joint j4: coulomb_friction */
     const scara_real_t t35 = parameters[FV4] * (SCARA_C(20.0) * dq[3]) + parameters[FC4] * t34
         + parameters[IA4] * (SCARA_C(20.0) * ddq[3]);
     input[3] = SCARA_C(10.0) * t35 + SCARA_C(-0.5) * t16;
     const scara_real_t t36 = parameters[MY4] * t17;
     const scara_real_t t37 = parameters[MX4] * t17;
-    const scara_real_t t38 = t12 * t36 + t8 * t37;
-    const scara_real_t t39 = t38 - parameters[MY2R] * t0;
-    const scara_real_t t40 = SCARA_C(-0.275) * t0;
+    const scara_real_t t38 = t12 * t36 + t8 * t37; /* link j4: inertia, momentum beyond */
+    const scara_real_t t39 = t38 - parameters[MY2R] * t0; /* link j3: inertia, momentum beyond */
+    const scara_real_t t40 = SCARA_C(-0.275) * t0; /* link j3: velocity of its origin */
+    /* link j3: inertia, momentum beyond */
     const scara_real_t t41 = t8 * t36 - t12 * t37 + parameters[M3R] * t40 - parameters[MX2R] * t0;
+    /* link j4: column of the mass matrix */
     const scara_real_t t42 = t12 * parameters[MY4] + t8 * parameters[MX4];
-    const scara_real_t t43 = t42 - parameters[MY2R];
+    const scara_real_t t43 = t42 - parameters[MY2R]; /* link j3: inertia of it and all beyond */
+    /* link j4: column of the mass matrix */
     const scara_real_t t44 = t8 * parameters[MY4] - t12 * parameters[MX4];
-    const scara_real_t t45 = SCARA_C(0.275) * parameters[M3R];
-    const scara_real_t t46 = parameters[MX2R] + (t45 - t44);
-    const scara_real_t t47 = t5 * t46 - t3 * t43;
+    const scara_real_t t45 = SCARA_C(0.275) * parameters[M3R]; /* link j3: column of the mass matrix */
+    const scara_real_t t46 = parameters[MX2R] + (t45 - t44); /* link j3: inertia of it and all beyond */
+    const scara_real_t t47 = t5 * t46 - t3 * t43; /* link j2: column of the mass matrix */
+    /* link j2: inertia, momentum beyond */
     const scara_real_t t48 = SCARA_C(0.325) * (t3 * t39 + t5 * t41) + t47 * (SCARA_C(0.325) * dq[0]);
-    const scara_real_t t49 = dq[2] * (q[2] * parameters[M3R]);
+    const scara_real_t t49 = dq[2] * (q[2] * parameters[M3R]); /* link j3: inertia, momentum beyond */
     const scara_real_t t50 = SCARA_C(0.275) * t38 + (t42 * t40 + t49) - t49;
     input_by_dq[0] = SCARA_C(4.0e2) * parameters[FV1] + SCARA_C(0.125) * (t50 + t48);
-    const scara_real_t t51 = SCARA_C(2.0) * t50;
+    const scara_real_t t51 = SCARA_C(2.0) * t50; /* link j2: derivatives */
     const scara_real_t t52 = SCARA_C(0.65) * dq[0];
     input_by_dq[4] = SCARA_C(0.1) * (t51 + t47 * t52);
-    const scara_real_t t53 = t42 * (SCARA_C(0.55) * t0);
+    const scara_real_t t53 = t42 * (SCARA_C(0.55) * t0); /* link j4: derivatives */
     const scara_real_t t54 = SCARA_C(0.5) * (t53 + (t3 * t42 + t5 * t44) * t52);
     input_by_dq[12] = t54;
-    const scara_real_t t55 = t5 * t43 + t3 * t46;
+    const scara_real_t t55 = t5 * t43 + t3 * t46; /* link j2: column of the mass matrix */
+    /* link j3: inertia of it and all beyond */
     const scara_real_t t56 = parameters[ZZ2R] + (parameters[ZZ4] + SCARA_C(0.275) * (SCARA_C(-2.0) * t44
         + t45));
+    /* link j2: inertia of it and all beyond */
     const scara_real_t t57 = parameters[ZZ1R] + (t56 + SCARA_C(0.325) * (SCARA_C(0.325) * parameters[M3R]
         + SCARA_C(2.0) * t55));
     input_by_ddq[0] = SCARA_C(0.0625) * t57;
-    const scara_real_t t58 = t56 + SCARA_C(0.325) * t55;
+    const scara_real_t t58 = t56 + SCARA_C(0.325) * t55; /* link j2: column of the mass matrix */
     input_by_ddq[4] = SCARA_C(0.1) * t58;
-    const scara_real_t t59 = SCARA_C(0.275) * t44 - parameters[ZZ4];
+    const scara_real_t t59 = SCARA_C(0.275) * t44 - parameters[ZZ4]; /* link j4: column of the mass matrix */
     const scara_real_t t60 = t59 + SCARA_C(0.325) * (t3 * t44 - t5 * t42);
     input_by_ddq[12] = SCARA_C(0.5) * t60;
-    const scara_real_t t61 = t46 * t6 - t43 * t9;
+    const scara_real_t t61 = t46 * t6 - t43 * t9; /* link j2: derivatives */
     const scara_real_t t62 = t5 * (t26 - parameters[M3R] * t9) + t3 * (t25 + parameters[M3R] * t6);
     input_by_q[1] = SCARA_C(0.0625) * (t61 + SCARA_C(0.325) * t62);
     input_by_q[5] = SCARA_C(0.1) * t61;
@@ -189,7 +199,7 @@ int scara_inverse_dynamics_derivatives(
     input_by_q[3] = t66;
     input_by_q[7] = SCARA_C(0.1) * t65;
     input_by_q[15] = SCARA_C(-0.5) * t64;
-    const scara_real_t t67 = SCARA_C(-2.0) * t37;
+    const scara_real_t t67 = SCARA_C(-2.0) * t37; /* link j4: derivatives */
     const scara_real_t t68 = SCARA_C(-2.0) * t36;
     const scara_real_t t69 = t8 * t67 + t12 * t68;
     const scara_real_t t70 = t5 * (t8 * t68 - t12 * t67) + t3 * t69;

@@ -7,24 +7,24 @@
  * Arm scara, description c1d518ff4a0020fb.
  * SPDX-License-Identifier: 0BSD
  *
- * Operations: 313 (195 mul, 118 add, 0 neg), 4 trig, 4 other.
+ * Operations: 313 (195 mul, 118 add, 0 neg), 4 trig, 4 other calls (sign, select and the like).
  *
- * @param[in]   q             [4]   [rad, rad, m, rad]                            joint coordinates; norm at
- *                                                                                most 10000
- * @param[in]   dq            [4]   [rad/s, rad/s, m/s, rad/s]                    joint velocities; norm at
- *                                                                                most 100000
- * @param[in]   ddq           [4]   [rad/s^2, rad/s^2, m/s^2, rad/s^2]            joint accelerations; norm at
- *                                                                                most 1e+08
- * @param[in]   parameters    [52]                                                standard parameters; norm at
- *                                                                                most 1e+09
- * @param[out]  input         [4]   [A]                                           inputs: motor currents,
- *                                                                                efforts where undriven
- * @param[out]  input_by_q    [16]  [(A) per (rad, rad, m, rad)]                  d input / d q; 4 x 4,
- *                                                                                row-major
- * @param[out]  input_by_dq   [16]  [(A) per (rad/s, rad/s, m/s, rad/s)]          d input / d dq; 4 x 4,
- *                                                                                row-major
- * @param[out]  input_by_ddq  [16]  [(A) per (rad/s^2, rad/s^2, m/s^2, rad/s^2)]  d input / d ddq; 4 x 4,
- *                                                                                row-major
+ * @param[in]   q             [4]   [rad, rad, m, rad]                          joint coordinates; norm at
+ *                                                                              most 10000
+ * @param[in]   dq            [4]   [rad/s, rad/s, m/s, rad/s]                  joint velocities; norm at most
+ *                                                                              100000
+ * @param[in]   ddq           [4]   [rad/s^2, rad/s^2, m/s^2, rad/s^2]          joint accelerations; norm at
+ *                                                                              most 1e+08
+ * @param[in]   parameters    [52]                                              standard parameters; norm at
+ *                                                                              most 1e+09
+ * @param[out]  input         [4]   [A]                                         inputs: motor currents,
+ *                                                                              efforts where undriven
+ * @param[out]  input_by_q    [16]  [A per (rad, rad, m, rad)]                  d input / d q; 4 x 4,
+ *                                                                              row-major
+ * @param[out]  input_by_dq   [16]  [A per (rad/s, rad/s, m/s, rad/s)]          d input / d dq; 4 x 4,
+ *                                                                              row-major
+ * @param[out]  input_by_ddq  [16]  [A per (rad/s^2, rad/s^2, m/s^2, rad/s^2)]  d input / d ddq; 4 x 4,
+ *                                                                              row-major
  *
  * Coordinates:
  *
@@ -90,11 +90,11 @@
  */
 #include "scara_private.h"
 
-#if SCARA_GENERATION != 0x5A40077AUL
+#if SCARA_GENERATION != 0xC2234E4EUL
 #error "scara.h and scara_inverse_dynamics_derivatives_standard.c are of different generations: generate the arm again"
 #endif
 
-int scara_inverse_dynamics_derivatives_standard(
+scara_status_t scara_inverse_dynamics_derivatives_standard(
     const scara_real_t q[SCARA_N_JOINTS],
     const scara_real_t dq[SCARA_N_JOINTS],
     const scara_real_t ddq[SCARA_N_JOINTS],
@@ -107,7 +107,7 @@ int scara_inverse_dynamics_derivatives_standard(
     enum { XX1 = 0, XY1, XZ1, YY1, YZ1, ZZ1, MX1, MY1, MZ1, M1, XX2, XY2, XZ2, YY2, YZ2, ZZ2, MX2, MY2, MZ2,
         M2, XX3, XY3, XZ3, YY3, YZ3, ZZ3, MX3, MY3, MZ3, M3, XX4, XY4, XZ4, YY4, YZ4, ZZ4, MX4, MY4, MZ4, M4,
         FV1, FC1, IA1, FV2, FC2, IA2, FV3, FC3, IA3, FV4, FC4, IA4 };
-    int status = SCARA_STATUS_OK;
+    scara_status_t status = SCARA_STATUS_OK;
 
     if (!scara_within_joints(q, SCARA_C(1.0e8))
         || !scara_within_joints(dq, SCARA_C(1.0e10))
@@ -127,93 +127,107 @@ int scara_inverse_dynamics_derivatives_standard(
     SCARA_SINCOS(q[1], &t3, &t1);
     scara_real_t t8, t12;
     SCARA_SINCOS(q[3], &t8, &t12);
-    const scara_real_t t0 = SCARA_C(0.325) * (dq[0] * dq[0]);
+    const scara_real_t t0 = SCARA_C(0.325) * (dq[0] * dq[0]); /* link j2: motion */
     const scara_real_t t2 = SCARA_C(-0.325) * ddq[0];
     const scara_real_t t4 = t1 * t0 + t3 * t2;
     const scara_real_t t5 = dq[0] + dq[1];
     const scara_real_t t6 = t5 * t5;
-    const scara_real_t t7 = SCARA_C(-0.275) * t6 - t4;
-    const scara_real_t t9 = t1 * t2 - t3 * t0;
+    const scara_real_t t7 = SCARA_C(-0.275) * t6 - t4; /* link j3: motion */
+    const scara_real_t t9 = t1 * t2 - t3 * t0; /* link j2: motion */
     const scara_real_t t10 = ddq[0] + ddq[1];
-    const scara_real_t t11 = t9 + SCARA_C(-0.275) * t10;
-    const scara_real_t t13 = t12 * t11 - t8 * t7;
+    const scara_real_t t11 = t9 + SCARA_C(-0.275) * t10; /* link j3: motion */
+    const scara_real_t t13 = t12 * t11 - t8 * t7; /* link j4: motion */
     const scara_real_t t14 = t12 * t7 + t8 * t11;
     const scara_real_t t15 = t10 - ddq[3];
+    /* link j4: force and moment */
     const scara_real_t t16 = t15 * parameters[ZZ4] + (t14 * parameters[MY4] - t13 * parameters[MX4]);
+    /* link j4: what it passes on */
     const scara_real_t t17 = t10 * parameters[ZZ3] + (t7 * parameters[MY3] - t11 * parameters[MX3]) + t16;
-    const scara_real_t t18 = t5 - dq[3];
+    const scara_real_t t18 = t5 - dq[3]; /* link j4: motion */
     const scara_real_t t19 = t18 * t18;
-    const scara_real_t t20 = t19 * parameters[MX4] - t15 * parameters[MY4];
+    const scara_real_t t20 = t19 * parameters[MX4] - t15 * parameters[MY4]; /* link j4: force and moment */
     const scara_real_t t21 = t14 * parameters[M4] - t20;
     const scara_real_t t22 = t19 * parameters[MY4] + t15 * parameters[MX4];
     const scara_real_t t23 = t13 * parameters[M4] - t22;
+    /* link j4: what it passes on */
     const scara_real_t t24 = t11 * parameters[M3] - (t6 * parameters[MY3] + t10 * parameters[MX3]) + (t8 * t21
         + t12 * t23);
+    /* link j3: what it passes on */
     const scara_real_t t25 = t10 * parameters[ZZ2] + (t4 * parameters[MY2] - t9 * parameters[MX2]) + (t17
         + SCARA_C(-0.275) * t24);
+    /* link j4: what it passes on */
     const scara_real_t t26 = t7 * parameters[M3] + (t10 * parameters[MY3] - t6 * parameters[MX3]) + (t12 * t21
         - t8 * t23);
+    /* link j3: what it passes on */
     const scara_real_t t27 = t26 - (t4 * parameters[M2] + (t6 * parameters[MX2] + t10 * parameters[MY2]));
     const scara_real_t t28 = t9 * parameters[M2] + (t6 * parameters[MY2] - t10 * parameters[MX2]) + t24;
+    /* link j2: what it passes on */
     const scara_real_t t29 = ddq[0] * parameters[ZZ1] + (t25 + SCARA_C(0.325) * (t3 * t27 - t1 * t28));
-    const scara_real_t t30 = scara_sign(dq[0]);
+    const scara_real_t t30 = scara_sign(dq[0]); /* joint j1: coulomb_friction */
     const scara_real_t t31 = SCARA_C(80.0) * dq[0] * parameters[FV1] + t30 * parameters[FC1]
         + SCARA_C(80.0) * ddq[0] * parameters[IA1];
     input[0] = SCARA_C(5.0) * t31 + SCARA_C(0.0625) * t29;
-    const scara_real_t t32 = scara_sign(dq[1]);
+    const scara_real_t t32 = scara_sign(dq[1]); /* joint j2: coulomb_friction */
     const scara_real_t t33 = SCARA_C(50.0) * dq[1] * parameters[FV2] + t32 * parameters[FC2]
         + SCARA_C(50.0) * ddq[1] * parameters[IA2];
     input[1] = SCARA_C(5.0) * t33 + SCARA_C(0.1) * t25;
-    const scara_real_t t34 = scara_sign(dq[2]);
+    const scara_real_t t34 = scara_sign(dq[2]); /* joint j3: coulomb_friction */
     const scara_real_t t35 = SCARA_C(314.1592653589793) * dq[2] * parameters[FV3] + t34 * parameters[FC3]
         + SCARA_C(314.1592653589793) * ddq[2] * parameters[IA3];
-    const scara_real_t t36 = ddq[2] - SCARA_C(9.81);
+    const scara_real_t t36 = ddq[2] - SCARA_C(9.81); /* link j3: motion */
     const scara_real_t t37 = SCARA_C(10.0) * t35 + SCARA_C(0.03183098861837907) * (t36 * parameters[M3]
         + t36 * parameters[M4]);
     input[2] = t37;
-    const scara_real_t t38 = scara_sign(dq[3]);
+    const scara_real_t t38 = scara_sign(dq[3]); /* joint j4: coulomb_friction */
     const scara_real_t t39 = SCARA_C(20.0) * dq[3] * parameters[FV4] + t38 * parameters[FC4]
         + SCARA_C(20.0) * ddq[3] * parameters[IA4];
     input[3] = SCARA_C(10.0) * t39 + SCARA_C(-0.5) * t16;
     const scara_real_t t40 = t18 * parameters[MY4];
     const scara_real_t t41 = t18 * parameters[MX4];
-    const scara_real_t t42 = parameters[M3] + parameters[M4];
-    const scara_real_t t43 = SCARA_C(-0.275) * t5;
+    const scara_real_t t42 = parameters[M3] + parameters[M4]; /* link j4: inertia of it and all beyond */
+    const scara_real_t t43 = SCARA_C(-0.275) * t5; /* link j3: velocity of its origin */
+    /* link j3: inertia, momentum beyond */
     const scara_real_t t44 = t8 * t40 - t12 * t41 - t5 * parameters[MX3] + t42 * t43;
     const scara_real_t t45 = t44 - t5 * parameters[MX2];
+    /* link j4: inertia, momentum beyond */
     const scara_real_t t46 = t5 * parameters[MY3] + (t12 * t40 + t8 * t41);
-    const scara_real_t t47 = t46 - t5 * parameters[MY2];
+    const scara_real_t t47 = t46 - t5 * parameters[MY2]; /* link j3: inertia, momentum beyond */
+    /* link j4: column of the mass matrix */
     const scara_real_t t48 = t12 * parameters[MY4] + t8 * parameters[MX4];
-    const scara_real_t t49 = parameters[MY3] + t48;
-    const scara_real_t t50 = t49 - parameters[MY2];
+    const scara_real_t t49 = parameters[MY3] + t48; /* link j4: inertia of it and all beyond */
+    const scara_real_t t50 = t49 - parameters[MY2]; /* link j3: inertia of it and all beyond */
+    /* link j4: column of the mass matrix */
     const scara_real_t t51 = t8 * parameters[MY4] - t12 * parameters[MX4];
-    const scara_real_t t52 = parameters[MX3] - t51;
-    const scara_real_t t53 = SCARA_C(0.275) * t42;
-    const scara_real_t t54 = parameters[MX2] + (t52 + t53);
-    const scara_real_t t55 = t3 * t54 - t1 * t50;
+    const scara_real_t t52 = parameters[MX3] - t51; /* link j4: inertia of it and all beyond */
+    const scara_real_t t53 = SCARA_C(0.275) * t42; /* link j3: column of the mass matrix */
+    const scara_real_t t54 = parameters[MX2] + (t52 + t53); /* link j3: inertia of it and all beyond */
+    const scara_real_t t55 = t3 * t54 - t1 * t50; /* link j2: column of the mass matrix */
+    /* link j2: inertia, momentum beyond */
     const scara_real_t t56 = SCARA_C(0.325) * (t1 * t47 + t3 * t45) + t55 * (SCARA_C(0.325) * dq[0]);
+    /* link j3: inertia, momentum beyond */
     const scara_real_t t57 = dq[2] * (parameters[MZ3] + parameters[MZ4] + q[2] * t42);
     const scara_real_t t58 = SCARA_C(0.275) * t46 + (t49 * t43 + t57) - t57;
     input_by_dq[0] = SCARA_C(4.0e2) * parameters[FV1] + SCARA_C(0.125) * (t58 + t56);
-    const scara_real_t t59 = SCARA_C(2.0) * t58;
+    const scara_real_t t59 = SCARA_C(2.0) * t58; /* link j2: derivatives */
     const scara_real_t t60 = SCARA_C(0.65) * dq[0];
     input_by_dq[4] = SCARA_C(0.1) * (t59 + t55 * t60);
-    const scara_real_t t61 = t48 * (SCARA_C(0.55) * t5);
+    const scara_real_t t61 = t48 * (SCARA_C(0.55) * t5); /* link j4: derivatives */
     const scara_real_t t62 = SCARA_C(0.5) * (t61 + (t1 * t48 + t3 * t51) * t60);
     input_by_dq[12] = t62;
-    const scara_real_t t63 = t3 * t50 + t1 * t54;
-    const scara_real_t t64 = parameters[M2] + t42;
+    const scara_real_t t63 = t3 * t50 + t1 * t54; /* link j2: column of the mass matrix */
+    const scara_real_t t64 = parameters[M2] + t42; /* link j3: inertia of it and all beyond */
     const scara_real_t t65 = parameters[ZZ2] + (parameters[ZZ3] + parameters[ZZ4] + SCARA_C(0.275) * (t53
         + SCARA_C(2.0) * t52));
+    /* link j2: inertia of it and all beyond */
     const scara_real_t t66 = parameters[ZZ1] + (t65 + SCARA_C(0.325) * (SCARA_C(0.325) * t64
         + SCARA_C(2.0) * t63));
     input_by_ddq[0] = SCARA_C(4.0e2) * parameters[IA1] + SCARA_C(0.0625) * t66;
-    const scara_real_t t67 = t65 + SCARA_C(0.325) * t63;
+    const scara_real_t t67 = t65 + SCARA_C(0.325) * t63; /* link j2: column of the mass matrix */
     input_by_ddq[4] = SCARA_C(0.1) * t67;
-    const scara_real_t t68 = SCARA_C(0.275) * t51 - parameters[ZZ4];
+    const scara_real_t t68 = SCARA_C(0.275) * t51 - parameters[ZZ4]; /* link j4: column of the mass matrix */
     const scara_real_t t69 = t68 + SCARA_C(0.325) * (t1 * t51 - t3 * t48);
     input_by_ddq[12] = SCARA_C(0.5) * t69;
-    const scara_real_t t70 = t3 * (t28 - t9 * t64) + t1 * (t27 + t4 * t64);
+    const scara_real_t t70 = t3 * (t28 - t9 * t64) + t1 * (t27 + t4 * t64); /* link j2: derivatives */
     const scara_real_t t71 = t4 * t54 - t9 * t50;
     input_by_q[1] = SCARA_C(0.0625) * (t71 + SCARA_C(0.325) * t70);
     input_by_q[5] = SCARA_C(0.1) * t71;
@@ -228,7 +242,7 @@ int scara_inverse_dynamics_derivatives_standard(
     input_by_dq[10] = SCARA_C(3141.5926535897934) * parameters[FV3];
     input_by_ddq[10] = SCARA_C(3141.5926535897934) * parameters[IA3] + SCARA_C(0.03183098861837907) * t42;
     const scara_real_t t73 = t14 * parameters[MX4] + t13 * parameters[MY4];
-    const scara_real_t t74 = t12 * t20 - t8 * t22;
+    const scara_real_t t74 = t12 * t20 - t8 * t22; /* link j4: derivatives */
     const scara_real_t t75 = t73 + SCARA_C(0.275) * t74;
     const scara_real_t t76 = t3 * (t12 * t22 + t8 * t20) + t1 * t74;
     input_by_q[3] = SCARA_C(0.0625) * (t75 + SCARA_C(0.325) * t76);

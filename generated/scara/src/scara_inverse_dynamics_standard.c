@@ -6,7 +6,7 @@
  * Arm scara, description c1d518ff4a0020fb.
  * SPDX-License-Identifier: 0BSD
  *
- * Operations: 135 (81 mul, 54 add, 0 neg), 4 trig, 4 other.
+ * Operations: 135 (81 mul, 54 add, 0 neg), 4 trig, 4 other calls (sign, select and the like).
  *
  * @param[in]   q           [4]   [rad, rad, m, rad]                  joint coordinates; norm at most 10000
  * @param[in]   dq          [4]   [rad/s, rad/s, m/s, rad/s]          joint velocities; norm at most 100000
@@ -79,11 +79,11 @@
  */
 #include "scara_private.h"
 
-#if SCARA_GENERATION != 0x5A40077AUL
+#if SCARA_GENERATION != 0xC2234E4EUL
 #error "scara.h and scara_inverse_dynamics_standard.c are of different generations: generate the arm again"
 #endif
 
-int scara_inverse_dynamics_standard(
+scara_status_t scara_inverse_dynamics_standard(
     const scara_real_t q[SCARA_N_JOINTS],
     const scara_real_t dq[SCARA_N_JOINTS],
     const scara_real_t ddq[SCARA_N_JOINTS],
@@ -93,7 +93,7 @@ int scara_inverse_dynamics_standard(
     enum { XX1 = 0, XY1, XZ1, YY1, YZ1, ZZ1, MX1, MY1, MZ1, M1, XX2, XY2, XZ2, YY2, YZ2, ZZ2, MX2, MY2, MZ2,
         M2, XX3, XY3, XZ3, YY3, YZ3, ZZ3, MX3, MY3, MZ3, M3, XX4, XY4, XZ4, YY4, YZ4, ZZ4, MX4, MY4, MZ4, M4,
         FV1, FC1, IA1, FV2, FC2, IA2, FV3, FC3, IA3, FV4, FC4, IA4 };
-    int status = SCARA_STATUS_OK;
+    scara_status_t status = SCARA_STATUS_OK;
 
     if (!scara_within_joints(q, SCARA_C(1.0e8))
         || !scara_within_joints(dq, SCARA_C(1.0e10))
@@ -110,49 +110,57 @@ int scara_inverse_dynamics_standard(
     SCARA_SINCOS(q[1], &t3, &t1);
     scara_real_t t8, t12;
     SCARA_SINCOS(q[3], &t8, &t12);
-    const scara_real_t t0 = SCARA_C(0.325) * (dq[0] * dq[0]);
+    const scara_real_t t0 = SCARA_C(0.325) * (dq[0] * dq[0]); /* link j2: motion */
     const scara_real_t t2 = SCARA_C(0.325) * ddq[0];
     const scara_real_t t4 = t3 * t2 - t1 * t0;
     const scara_real_t t5 = dq[0] + dq[1];
     const scara_real_t t6 = t5 * t5;
-    const scara_real_t t7 = t4 + SCARA_C(-0.275) * t6;
-    const scara_real_t t9 = t3 * t0 + t1 * t2;
+    const scara_real_t t7 = t4 + SCARA_C(-0.275) * t6; /* link j3: motion */
+    const scara_real_t t9 = t3 * t0 + t1 * t2; /* link j2: motion */
     const scara_real_t t10 = ddq[0] + ddq[1];
-    const scara_real_t t11 = t9 + SCARA_C(0.275) * t10;
-    const scara_real_t t13 = t8 * t7 + t12 * t11;
+    const scara_real_t t11 = t9 + SCARA_C(0.275) * t10; /* link j3: motion */
+    const scara_real_t t13 = t8 * t7 + t12 * t11; /* link j4: motion */
     const scara_real_t t14 = t12 * t7 - t8 * t11;
     const scara_real_t t15 = t10 - ddq[3];
+    /* link j4: force and moment */
     const scara_real_t t16 = t15 * parameters[ZZ4] + (t13 * parameters[MX4] + t14 * parameters[MY4]);
+    /* link j4: what it passes on */
     const scara_real_t t17 = t10 * parameters[ZZ3] + (t11 * parameters[MX3] + t7 * parameters[MY3]) + t16;
-    const scara_real_t t18 = dq[3] - t5;
+    const scara_real_t t18 = dq[3] - t5; /* link j4: motion */
     const scara_real_t t19 = t18 * t18;
+    /* link j4: force and moment */
     const scara_real_t t20 = t19 * parameters[MX4] - t15 * parameters[MY4] - t14 * parameters[M4];
     const scara_real_t t21 = t13 * parameters[M4] + (t19 * parameters[MY4] + t15 * parameters[MX4]);
+    /* link j4: what it passes on */
     const scara_real_t t22 = t11 * parameters[M3] + (t6 * parameters[MY3] + t10 * parameters[MX3]) + (t8 * t20
         + t12 * t21);
+    /* link j3: what it passes on */
     const scara_real_t t23 = t10 * parameters[ZZ2] + (t9 * parameters[MX2] - t4 * parameters[MY2]) + (t17
         + SCARA_C(0.275) * t22);
+    /* link j4: what it passes on */
     const scara_real_t t24 = t7 * parameters[M3] + (t10 * parameters[MY3] - t6 * parameters[MX3]) + (t8 * t21
         - t12 * t20);
+    /* link j3: what it passes on */
     const scara_real_t t25 = t4 * parameters[M2] - (t6 * parameters[MX2] + t10 * parameters[MY2]) + t24;
     const scara_real_t t26 = t9 * parameters[M2] + (t10 * parameters[MX2] - t6 * parameters[MY2]) + t22;
+    /* link j2: what it passes on */
     const scara_real_t t27 = ddq[0] * parameters[ZZ1] + (t23 + SCARA_C(0.325) * (t3 * t25 + t1 * t26));
-    const scara_real_t t28 = scara_sign(dq[0]);
+    const scara_real_t t28 = scara_sign(dq[0]); /* joint j1: coulomb_friction */
     const scara_real_t t29 = SCARA_C(80.0) * dq[0] * parameters[FV1] + t28 * parameters[FC1]
         + SCARA_C(80.0) * ddq[0] * parameters[IA1];
     out[0] = SCARA_C(5.0) * t29 + SCARA_C(0.0625) * t27;
-    const scara_real_t t30 = scara_sign(dq[1]);
+    const scara_real_t t30 = scara_sign(dq[1]); /* joint j2: coulomb_friction */
     const scara_real_t t31 = SCARA_C(50.0) * dq[1] * parameters[FV2] + t30 * parameters[FC2]
         + SCARA_C(50.0) * ddq[1] * parameters[IA2];
     out[1] = SCARA_C(5.0) * t31 + SCARA_C(0.1) * t23;
-    const scara_real_t t32 = scara_sign(dq[2]);
+    const scara_real_t t32 = scara_sign(dq[2]); /* joint j3: coulomb_friction */
     const scara_real_t t33 = SCARA_C(314.1592653589793) * dq[2] * parameters[FV3] + t32 * parameters[FC3]
         + SCARA_C(314.1592653589793) * ddq[2] * parameters[IA3];
-    const scara_real_t t34 = ddq[2] - SCARA_C(9.81);
+    const scara_real_t t34 = ddq[2] - SCARA_C(9.81); /* link j3: motion */
     const scara_real_t t35 = SCARA_C(10.0) * t33 + SCARA_C(0.03183098861837907) * (t34 * parameters[M3]
         + t34 * parameters[M4]);
     out[2] = t35;
-    const scara_real_t t36 = scara_sign(dq[3]);
+    const scara_real_t t36 = scara_sign(dq[3]); /* joint j4: coulomb_friction */
     const scara_real_t t37 = SCARA_C(20.0) * dq[3] * parameters[FV4] + t36 * parameters[FC4]
         + SCARA_C(20.0) * ddq[3] * parameters[IA4];
     out[3] = SCARA_C(10.0) * t37 + SCARA_C(-0.5) * t16;

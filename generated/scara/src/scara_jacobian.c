@@ -20,15 +20,15 @@
  */
 #include "scara_private.h"
 
-#if SCARA_GENERATION != 0x5A40077AUL
+#if SCARA_GENERATION != 0xC2234E4EUL
 #error "scara.h and scara_jacobian.c are of different generations: generate the arm again"
 #endif
 
-int scara_jacobian(
+scara_status_t scara_jacobian(
     const scara_real_t q[SCARA_N_JOINTS],
     scara_real_t out[6 * SCARA_N_JOINTS])
 {
-    int status = SCARA_STATUS_OK;
+    scara_status_t status = SCARA_STATUS_OK;
 
     if (!scara_within_joints(q, SCARA_C(1.0e8))) {
         status |= SCARA_STATUS_INPUT;
@@ -42,7 +42,7 @@ int scara_jacobian(
     SCARA_SINCOS(q[0], &t2, &t0);
     scara_real_t t1, t3;
     SCARA_SINCOS(q[1], &t1, &t3);
-    const scara_real_t t4 = SCARA_C(-0.275) * (t0 * t1 + t2 * t3);
+    const scara_real_t t4 = SCARA_C(-0.275) * (t0 * t1 + t2 * t3); /* link j3: pose */
     out[0] = SCARA_C(-0.325) * t2 + t4;
     out[1] = t4;
     const scara_real_t t5 = SCARA_C(0.275) * (t0 * t3 - t2 * t1);

@@ -43,18 +43,18 @@
  */
 #include "scara_private.h"
 
-#if SCARA_GENERATION != 0x5A40077AUL
+#if SCARA_GENERATION != 0xC2234E4EUL
 #error "scara.h and scara_mass_matrix.c are of different generations: generate the arm again"
 #endif
 
-int scara_mass_matrix(
+scara_status_t scara_mass_matrix(
     const scara_real_t q[SCARA_N_JOINTS],
     const scara_real_t parameters[SCARA_N_PARAMETERS],
     scara_real_t out[SCARA_N_JOINTS * SCARA_N_JOINTS])
 {
     enum { ZZ1R = 0, ZZ2R, MX2R, MY2R, M3R, ZZ4, MX4, MY4, FV1, FC1, FV2, FC2, IA2, FV3, FC3, IA3, FV4, FC4,
         IA4 };
-    int status = SCARA_STATUS_OK;
+    scara_status_t status = SCARA_STATUS_OK;
 
     if (!scara_within_joints(q, SCARA_C(1.0e8))
         || !SCARA_PARAMETERS_USABLE(scara_within(parameters, 19, SCARA_C(1.0e18)))) {
@@ -69,17 +69,21 @@ int scara_mass_matrix(
     SCARA_SINCOS(q[1], &t3, &t6);
     scara_real_t t1, t0;
     SCARA_SINCOS(q[3], &t1, &t0);
+    /* link j4: column of the mass matrix */
     const scara_real_t t2 = t0 * parameters[MY4] + t1 * parameters[MX4];
     const scara_real_t t4 = t0 * parameters[MX4] - t1 * parameters[MY4];
-    const scara_real_t t5 = SCARA_C(0.275) * parameters[M3R];
+    const scara_real_t t5 = SCARA_C(0.275) * parameters[M3R]; /* link j3: column of the mass matrix */
+    /* link j2: column of the mass matrix */
     const scara_real_t t7 = t3 * (t2 - parameters[MY2R]) + t6 * (parameters[MX2R] + (t4 + t5));
+    /* link j3: inertia of it and all beyond */
     const scara_real_t t8 = parameters[ZZ2R] + (parameters[ZZ4] + SCARA_C(0.275) * (SCARA_C(2.0) * t4 + t5));
+    /* link j2: inertia of it and all beyond */
     const scara_real_t t9 = parameters[ZZ1R] + (t8 + SCARA_C(0.325) * (SCARA_C(0.325) * parameters[M3R]
         + SCARA_C(2.0) * t7));
     out[0] = t9;
-    const scara_real_t t10 = t8 + SCARA_C(0.325) * t7;
+    const scara_real_t t10 = t8 + SCARA_C(0.325) * t7; /* link j2: column of the mass matrix */
     out[1] = t10;
-    const scara_real_t t11 = SCARA_C(-0.275) * t4 - parameters[ZZ4];
+    const scara_real_t t11 = SCARA_C(-0.275) * t4 - parameters[ZZ4]; /* link j4: column of the mass matrix */
     const scara_real_t t12 = t11 + SCARA_C(-0.325) * (t3 * t2 + t6 * t4);
     out[3] = t12;
     out[4] = t10;

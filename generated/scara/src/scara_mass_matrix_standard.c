@@ -76,11 +76,11 @@
  */
 #include "scara_private.h"
 
-#if SCARA_GENERATION != 0x5A40077AUL
+#if SCARA_GENERATION != 0xC2234E4EUL
 #error "scara.h and scara_mass_matrix_standard.c are of different generations: generate the arm again"
 #endif
 
-int scara_mass_matrix_standard(
+scara_status_t scara_mass_matrix_standard(
     const scara_real_t q[SCARA_N_JOINTS],
     const scara_real_t parameters[SCARA_N_STANDARD_PARAMETERS],
     scara_real_t out[SCARA_N_JOINTS * SCARA_N_JOINTS])
@@ -88,7 +88,7 @@ int scara_mass_matrix_standard(
     enum { XX1 = 0, XY1, XZ1, YY1, YZ1, ZZ1, MX1, MY1, MZ1, M1, XX2, XY2, XZ2, YY2, YZ2, ZZ2, MX2, MY2, MZ2,
         M2, XX3, XY3, XZ3, YY3, YZ3, ZZ3, MX3, MY3, MZ3, M3, XX4, XY4, XZ4, YY4, YZ4, ZZ4, MX4, MY4, MZ4, M4,
         FV1, FC1, IA1, FV2, FC2, IA2, FV3, FC3, IA3, FV4, FC4, IA4 };
-    int status = SCARA_STATUS_OK;
+    scara_status_t status = SCARA_STATUS_OK;
 
     if (!scara_within_joints(q, SCARA_C(1.0e8))
         || !SCARA_PARAMETERS_USABLE(scara_within(parameters, 52, SCARA_C(1.0e18)))) {
@@ -103,21 +103,25 @@ int scara_mass_matrix_standard(
     SCARA_SINCOS(q[1], &t3, &t8);
     scara_real_t t1, t0;
     SCARA_SINCOS(q[3], &t1, &t0);
+    /* link j4: column of the mass matrix */
     const scara_real_t t2 = t0 * parameters[MY4] + t1 * parameters[MX4];
     const scara_real_t t4 = t1 * parameters[MY4] - t0 * parameters[MX4];
-    const scara_real_t t5 = parameters[MX3] - t4;
+    const scara_real_t t5 = parameters[MX3] - t4; /* link j4: inertia of it and all beyond */
     const scara_real_t t6 = parameters[M3] + parameters[M4];
-    const scara_real_t t7 = SCARA_C(0.275) * t6;
+    const scara_real_t t7 = SCARA_C(0.275) * t6; /* link j3: column of the mass matrix */
+    /* link j2: column of the mass matrix */
     const scara_real_t t9 = t3 * (parameters[MY3] + t2 - parameters[MY2]) + t8 * (parameters[MX2] + (t5
         + t7));
+    /* link j3: inertia of it and all beyond */
     const scara_real_t t10 = parameters[ZZ2] + (parameters[ZZ3] + parameters[ZZ4] + SCARA_C(0.275) * (t7
         + SCARA_C(2.0) * t5));
+    /* link j2: inertia of it and all beyond */
     const scara_real_t t11 = t10 + SCARA_C(0.325) * (SCARA_C(0.325) * (parameters[M2] + t6)
         + SCARA_C(2.0) * t9);
     out[0] = parameters[ZZ1] + t11 + SCARA_C(6.4e3) * parameters[IA1];
-    const scara_real_t t12 = t10 + SCARA_C(0.325) * t9;
+    const scara_real_t t12 = t10 + SCARA_C(0.325) * t9; /* link j2: column of the mass matrix */
     out[1] = t12;
-    const scara_real_t t13 = SCARA_C(0.275) * t4 - parameters[ZZ4];
+    const scara_real_t t13 = SCARA_C(0.275) * t4 - parameters[ZZ4]; /* link j4: column of the mass matrix */
     const scara_real_t t14 = t13 + SCARA_C(0.325) * (t8 * t4 - t3 * t2);
     out[3] = t14;
     out[4] = t12;

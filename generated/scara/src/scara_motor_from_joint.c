@@ -24,11 +24,11 @@
  */
 #include "scara_private.h"
 
-#if SCARA_GENERATION != 0x5A40077AUL
+#if SCARA_GENERATION != 0xC2234E4EUL
 #error "scara.h and scara_motor_from_joint.c are of different generations: generate the arm again"
 #endif
 
-int scara_motor_from_joint(
+scara_status_t scara_motor_from_joint(
     const scara_real_t q[SCARA_N_JOINTS],
     const scara_real_t dq[SCARA_N_JOINTS],
     const scara_real_t ddq[SCARA_N_JOINTS],
@@ -36,7 +36,7 @@ int scara_motor_from_joint(
     scara_real_t dq_m[SCARA_N_JOINTS],
     scara_real_t ddq_m[SCARA_N_JOINTS])
 {
-    int status = SCARA_STATUS_OK;
+    scara_status_t status = SCARA_STATUS_OK;
 
     if (!scara_within_joints(q, SCARA_C(1.0e8))
         || !scara_within_joints(dq, SCARA_C(1.0e10))

@@ -13,7 +13,7 @@
 
 #include "scara.h"
 
-#if SCARA_GENERATION != 0x5A40077AUL
+#if SCARA_GENERATION != 0xC2234E4EUL
 #error "scara.h and scara_private.h are of different generations: generate the arm again"
 #endif
 

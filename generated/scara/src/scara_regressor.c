@@ -6,7 +6,7 @@
  * Arm scara, description c1d518ff4a0020fb.
  * SPDX-License-Identifier: 0BSD
  *
- * Operations: 87 (62 mul, 25 add, 0 neg), 4 trig, 4 other.
+ * Operations: 87 (62 mul, 25 add, 0 neg), 4 trig, 4 other calls (sign, select and the like).
  *
  * @param[in]   q    [4]   [rad, rad, m, rad]                  joint coordinates; norm at most 10000
  * @param[in]   dq   [4]   [rad/s, rad/s, m/s, rad/s]          joint velocities; norm at most 100000
@@ -28,17 +28,17 @@
  */
 #include "scara_private.h"
 
-#if SCARA_GENERATION != 0x5A40077AUL
+#if SCARA_GENERATION != 0xC2234E4EUL
 #error "scara.h and scara_regressor.c are of different generations: generate the arm again"
 #endif
 
-int scara_regressor(
+scara_status_t scara_regressor(
     const scara_real_t q[SCARA_N_JOINTS],
     const scara_real_t dq[SCARA_N_JOINTS],
     const scara_real_t ddq[SCARA_N_JOINTS],
     scara_real_t out[SCARA_N_JOINTS * SCARA_N_PARAMETERS])
 {
-    int status = SCARA_STATUS_OK;
+    scara_status_t status = SCARA_STATUS_OK;
 
     if (!scara_within_joints(q, SCARA_C(1.0e8))
         || !scara_within_joints(dq, SCARA_C(1.0e10))
@@ -55,14 +55,14 @@ int scara_regressor(
     scara_real_t t15, t16;
     SCARA_SINCOS(q[3], &t15, &t16);
     out[0] = SCARA_C(0.0625) * ddq[0];
-    const scara_real_t t0 = ddq[0] + ddq[1];
+    const scara_real_t t0 = ddq[0] + ddq[1]; /* link j2: motion */
     out[1] = SCARA_C(0.0625) * t0;
     out[20] = SCARA_C(0.1) * t0;
     const scara_real_t t1 = dq[0] + dq[1];
     const scara_real_t t2 = t1 * t1;
-    const scara_real_t t4 = SCARA_C(-0.0203125) * t3;
+    const scara_real_t t4 = SCARA_C(-0.0203125) * t3; /* link j2: velocities by those of the joints */
     const scara_real_t t6 = SCARA_C(0.0203125) * t5;
-    const scara_real_t t7 = SCARA_C(0.325) * (dq[0] * dq[0]);
+    const scara_real_t t7 = SCARA_C(0.325) * (dq[0] * dq[0]); /* link j2: motion */
     const scara_real_t t8 = SCARA_C(0.325) * ddq[0];
     const scara_real_t t9 = t3 * t7 + t5 * t8;
     out[2] = t2 * t4 + t0 * t6 + SCARA_C(0.0625) * t9;
@@ -70,43 +70,43 @@ int scara_regressor(
     const scara_real_t t10 = t5 * t7 - t3 * t8;
     out[3] = t0 * t4 - t2 * t6 + SCARA_C(0.0625) * t10;
     out[22] = SCARA_C(0.1) * t10;
-    const scara_real_t t11 = SCARA_C(-0.275) * t2 - t10;
+    const scara_real_t t11 = SCARA_C(-0.275) * t2 - t10; /* link j3: motion */
     const scara_real_t t12 = t9 + SCARA_C(0.275) * t0;
-    const scara_real_t t13 = t6 + SCARA_C(0.0171875);
+    const scara_real_t t13 = t6 + SCARA_C(0.0171875); /* link j3: velocities by those of the joints */
     out[4] = t12 * t13 - t11 * t4;
     out[23] = SCARA_C(0.027500000000000004) * t12;
     out[42] = SCARA_C(0.03183098861837907) * (ddq[2] - SCARA_C(9.81));
-    const scara_real_t t14 = t0 - ddq[3];
+    const scara_real_t t14 = t0 - ddq[3]; /* link j4: motion */
     out[5] = SCARA_C(0.0625) * t14;
     out[24] = SCARA_C(0.1) * t14;
     out[62] = SCARA_C(-0.5) * t14;
     const scara_real_t t17 = t15 * t11 + t16 * t12;
-    const scara_real_t t18 = SCARA_C(0.0625) * t17;
-    const scara_real_t t19 = dq[3] - t1;
+    const scara_real_t t18 = SCARA_C(0.0625) * t17; /* link j4: columns */
+    const scara_real_t t19 = dq[3] - t1; /* link j4: motion */
     const scara_real_t t20 = t19 * t19;
-    const scara_real_t t21 = t16 * t20 - t15 * t14;
+    const scara_real_t t21 = t16 * t20 - t15 * t14; /* link j4: columns */
     const scara_real_t t22 = t15 * t20 + t16 * t14;
     out[6] = t18 + (t21 * t4 + t22 * t13);
     out[25] = SCARA_C(1.6) * (t18 + SCARA_C(0.0171875) * t22);
     out[63] = SCARA_C(-0.5) * t17;
-    const scara_real_t t23 = t15 * t12 - t16 * t11;
-    const scara_real_t t24 = SCARA_C(-0.0625) * t23;
+    const scara_real_t t23 = t15 * t12 - t16 * t11; /* link j4: motion */
+    const scara_real_t t24 = SCARA_C(-0.0625) * t23; /* link j4: columns */
     out[7] = t24 + (t21 * t13 - t22 * t4);
     out[26] = SCARA_C(1.6) * (t24 + SCARA_C(0.0171875) * t21);
     out[64] = SCARA_C(0.5) * t23;
     out[8] = SCARA_C(4.0e2) * dq[0];
-    const scara_real_t t25 = scara_sign(dq[0]);
+    const scara_real_t t25 = scara_sign(dq[0]); /* joint j1: coulomb_friction */
     out[9] = SCARA_C(5.0) * t25;
     out[29] = SCARA_C(250.0) * dq[1];
-    const scara_real_t t26 = scara_sign(dq[1]);
+    const scara_real_t t26 = scara_sign(dq[1]); /* joint j2: coulomb_friction */
     out[30] = SCARA_C(5.0) * t26;
     out[31] = SCARA_C(250.0) * ddq[1];
     out[51] = SCARA_C(3141.5926535897934) * dq[2];
-    const scara_real_t t27 = scara_sign(dq[2]);
+    const scara_real_t t27 = scara_sign(dq[2]); /* joint j3: coulomb_friction */
     out[52] = SCARA_C(10.0) * t27;
     out[53] = SCARA_C(3141.5926535897934) * ddq[2];
     out[73] = SCARA_C(2.0e2) * dq[3];
-    const scara_real_t t28 = scara_sign(dq[3]);
+    const scara_real_t t28 = scara_sign(dq[3]); /* joint j4: coulomb_friction */
     out[74] = SCARA_C(10.0) * t28;
     out[75] = SCARA_C(2.0e2) * ddq[3];
     /* always zero */

@@ -6,7 +6,7 @@
  * Arm scara, description c1d518ff4a0020fb.
  * SPDX-License-Identifier: 0BSD
  *
- * Operations: 101 (70 mul, 30 add, 1 neg), 4 trig, 4 other.
+ * Operations: 101 (70 mul, 30 add, 1 neg), 4 trig, 4 other calls (sign, select and the like).
  *
  * @param[in]   q    [4]    [rad, rad, m, rad]                  joint coordinates; norm at most 10000
  * @param[in]   dq   [4]    [rad/s, rad/s, m/s, rad/s]          joint velocities; norm at most 100000
@@ -31,17 +31,17 @@
  */
 #include "scara_private.h"
 
-#if SCARA_GENERATION != 0x5A40077AUL
+#if SCARA_GENERATION != 0xC2234E4EUL
 #error "scara.h and scara_regressor_standard.c are of different generations: generate the arm again"
 #endif
 
-int scara_regressor_standard(
+scara_status_t scara_regressor_standard(
     const scara_real_t q[SCARA_N_JOINTS],
     const scara_real_t dq[SCARA_N_JOINTS],
     const scara_real_t ddq[SCARA_N_JOINTS],
     scara_real_t out[SCARA_N_JOINTS * SCARA_N_STANDARD_PARAMETERS])
 {
-    int status = SCARA_STATUS_OK;
+    scara_status_t status = SCARA_STATUS_OK;
 
     if (!scara_within_joints(q, SCARA_C(1.0e8))
         || !scara_within_joints(dq, SCARA_C(1.0e10))
@@ -58,31 +58,31 @@ int scara_regressor_standard(
     scara_real_t t24, t25;
     SCARA_SINCOS(q[3], &t24, &t25);
     out[5] = SCARA_C(0.0625) * ddq[0];
-    const scara_real_t t0 = ddq[0] + ddq[1];
+    const scara_real_t t0 = ddq[0] + ddq[1]; /* link j2: motion */
     const scara_real_t t1 = SCARA_C(0.0625) * t0;
     out[15] = t1;
     const scara_real_t t2 = SCARA_C(0.1) * t0;
     out[67] = t2;
     const scara_real_t t3 = dq[0] + dq[1];
     const scara_real_t t4 = t3 * t3;
-    const scara_real_t t6 = SCARA_C(-0.325) * t5;
-    const scara_real_t t7 = t4 * t6;
-    const scara_real_t t9 = SCARA_C(0.325) * t8;
-    const scara_real_t t10 = SCARA_C(0.325) * (dq[0] * dq[0]);
+    const scara_real_t t6 = SCARA_C(-0.325) * t5; /* link j2: velocities by those of the joints */
+    const scara_real_t t7 = t4 * t6; /* link j2: columns */
+    const scara_real_t t9 = SCARA_C(0.325) * t8; /* link j2: velocities by those of the joints */
+    const scara_real_t t10 = SCARA_C(0.325) * (dq[0] * dq[0]); /* link j2: motion */
     const scara_real_t t11 = SCARA_C(0.325) * ddq[0];
     const scara_real_t t12 = t5 * t10 + t8 * t11;
     out[16] = SCARA_C(0.0625) * (t12 + (t7 + t0 * t9));
     out[68] = SCARA_C(0.1) * t12;
-    const scara_real_t t13 = t0 * t6;
-    const scara_real_t t14 = t8 * t10 - t5 * t11;
+    const scara_real_t t13 = t0 * t6; /* link j2: columns */
+    const scara_real_t t14 = t8 * t10 - t5 * t11; /* link j2: motion */
     out[17] = SCARA_C(0.0625) * (t14 + (t13 - t4 * t9));
     const scara_real_t t15 = SCARA_C(0.1) * t14;
     out[69] = t15;
     out[19] = SCARA_C(0.006601562500000001) * ddq[0];
     out[25] = t1;
     out[77] = t2;
-    const scara_real_t t16 = t9 + SCARA_C(0.275);
-    const scara_real_t t17 = SCARA_C(0.275) * t0;
+    const scara_real_t t16 = t9 + SCARA_C(0.275); /* link j3: velocities by those of the joints */
+    const scara_real_t t17 = SCARA_C(0.275) * t0; /* link j3: motion */
     const scara_real_t t18 = t12 + t17;
     out[26] = SCARA_C(0.0625) * (t18 + (t7 + t0 * t16));
     out[78] = SCARA_C(0.1) * (t17 + t18);
@@ -95,19 +95,19 @@ int scara_regressor_standard(
     out[81] = t21;
     const scara_real_t t22 = SCARA_C(0.03183098861837907) * (ddq[2] - SCARA_C(9.81));
     out[133] = t22;
-    const scara_real_t t23 = t0 - ddq[3];
+    const scara_real_t t23 = t0 - ddq[3]; /* link j4: motion */
     out[35] = SCARA_C(0.0625) * t23;
     out[87] = SCARA_C(0.1) * t23;
     out[191] = SCARA_C(-0.5) * t23;
     const scara_real_t t26 = t24 * t19 + t25 * t18;
     const scara_real_t t27 = dq[3] - t3;
     const scara_real_t t28 = t27 * t27;
-    const scara_real_t t29 = t25 * t28 - t24 * t23;
+    const scara_real_t t29 = t25 * t28 - t24 * t23; /* link j4: columns */
     const scara_real_t t30 = t24 * t28 + t25 * t23;
     out[36] = SCARA_C(0.0625) * (t26 + (t6 * t29 + t16 * t30));
     out[88] = SCARA_C(0.1) * (t26 + SCARA_C(0.275) * t30);
     out[192] = SCARA_C(-0.5) * t26;
-    const scara_real_t t31 = t25 * t19 - t24 * t18;
+    const scara_real_t t31 = t25 * t19 - t24 * t18; /* link j4: motion */
     out[37] = SCARA_C(0.0625) * (t31 + (t16 * t29 - t6 * t30));
     out[89] = SCARA_C(0.1) * (t31 + SCARA_C(0.275) * t29);
     out[193] = SCARA_C(-0.5) * t31;
@@ -115,19 +115,19 @@ int scara_regressor_standard(
     out[91] = t21;
     out[143] = t22;
     out[40] = SCARA_C(4.0e2) * dq[0];
-    const scara_real_t t32 = scara_sign(dq[0]);
+    const scara_real_t t32 = scara_sign(dq[0]); /* joint j1: coulomb_friction */
     out[41] = SCARA_C(5.0) * t32;
     out[42] = SCARA_C(4.0e2) * ddq[0];
     out[95] = SCARA_C(250.0) * dq[1];
-    const scara_real_t t33 = scara_sign(dq[1]);
+    const scara_real_t t33 = scara_sign(dq[1]); /* joint j2: coulomb_friction */
     out[96] = SCARA_C(5.0) * t33;
     out[97] = SCARA_C(250.0) * ddq[1];
     out[150] = SCARA_C(3141.5926535897934) * dq[2];
-    const scara_real_t t34 = scara_sign(dq[2]);
+    const scara_real_t t34 = scara_sign(dq[2]); /* joint j3: coulomb_friction */
     out[151] = SCARA_C(10.0) * t34;
     out[152] = SCARA_C(3141.5926535897934) * ddq[2];
     out[205] = SCARA_C(2.0e2) * dq[3];
-    const scara_real_t t35 = scara_sign(dq[3]);
+    const scara_real_t t35 = scara_sign(dq[3]); /* joint j4: coulomb_friction */
     out[206] = SCARA_C(10.0) * t35;
     out[207] = SCARA_C(2.0e2) * ddq[3];
     /* always zero */

@@ -6,7 +6,7 @@
  * Arm scara, description c1d518ff4a0020fb.
  * SPDX-License-Identifier: 0BSD
  *
- * Operations: 89 (62 mul, 27 add, 0 neg), 4 trig, 4 other.
+ * Operations: 89 (62 mul, 27 add, 0 neg), 4 trig, 4 other calls (sign, select and the like).
  *
  * @param[in]   q      [4]   [rad, rad, m, rad]                  joint coordinates; norm at most 10000
  * @param[in]   dq     [4]   [rad/s, rad/s, m/s, rad/s]          joint velocities; norm at most 100000
@@ -30,18 +30,18 @@
  */
 #include "scara_private.h"
 
-#if SCARA_GENERATION != 0x5A40077AUL
+#if SCARA_GENERATION != 0xC2234E4EUL
 #error "scara.h and scara_slotine_li_regressor.c are of different generations: generate the arm again"
 #endif
 
-int scara_slotine_li_regressor(
+scara_status_t scara_slotine_li_regressor(
     const scara_real_t q[SCARA_N_JOINTS],
     const scara_real_t dq[SCARA_N_JOINTS],
     const scara_real_t dq_r[SCARA_N_JOINTS],
     const scara_real_t ddq_r[SCARA_N_JOINTS],
     scara_real_t out[SCARA_N_JOINTS * SCARA_N_PARAMETERS])
 {
-    int status = SCARA_STATUS_OK;
+    scara_status_t status = SCARA_STATUS_OK;
 
     if (!scara_within_joints(q, SCARA_C(1.0e8))
         || !scara_within_joints(dq, SCARA_C(1.0e10))
@@ -59,15 +59,15 @@ int scara_slotine_li_regressor(
     scara_real_t t18, t17;
     SCARA_SINCOS(q[3], &t18, &t17);
     out[0] = SCARA_C(0.0625) * ddq_r[0];
-    const scara_real_t t0 = ddq_r[0] + ddq_r[1];
+    const scara_real_t t0 = ddq_r[0] + ddq_r[1]; /* link j2: motion */
     out[1] = SCARA_C(0.0625) * t0;
     out[20] = SCARA_C(0.1) * t0;
     const scara_real_t t1 = dq[0] + dq[1];
     const scara_real_t t2 = dq_r[0] + dq_r[1];
     const scara_real_t t3 = t1 * t2;
-    const scara_real_t t5 = SCARA_C(-0.0203125) * t4;
+    const scara_real_t t5 = SCARA_C(-0.0203125) * t4; /* link j2: velocities by those of the joints */
     const scara_real_t t7 = SCARA_C(0.0203125) * t6;
-    const scara_real_t t8 = SCARA_C(0.325) * (dq[0] * dq_r[0]);
+    const scara_real_t t8 = SCARA_C(0.325) * (dq[0] * dq_r[0]); /* link j2: motion */
     const scara_real_t t9 = SCARA_C(0.325) * ddq_r[0];
     const scara_real_t t10 = t4 * t8 + t6 * t9;
     out[2] = t5 * t3 + t7 * t0 + SCARA_C(0.0625) * t10;
@@ -75,42 +75,42 @@ int scara_slotine_li_regressor(
     const scara_real_t t11 = t6 * t8 - t4 * t9;
     out[3] = t5 * t0 - t7 * t3 + SCARA_C(0.0625) * t11;
     out[22] = SCARA_C(0.1) * t11;
-    const scara_real_t t12 = SCARA_C(-0.275) * t3 - t11;
+    const scara_real_t t12 = SCARA_C(-0.275) * t3 - t11; /* link j3: motion */
     const scara_real_t t13 = t10 + SCARA_C(0.275) * t0;
-    const scara_real_t t14 = t7 + SCARA_C(0.0171875);
+    const scara_real_t t14 = t7 + SCARA_C(0.0171875); /* link j3: velocities by those of the joints */
     out[4] = t14 * t13 - t5 * t12;
     out[23] = SCARA_C(0.027500000000000004) * t13;
     out[42] = SCARA_C(0.03183098861837907) * (ddq_r[2] - SCARA_C(9.81));
-    const scara_real_t t15 = t0 - ddq_r[3];
+    const scara_real_t t15 = t0 - ddq_r[3]; /* link j4: motion */
     out[5] = SCARA_C(0.0625) * t15;
     out[24] = SCARA_C(0.1) * t15;
     out[62] = SCARA_C(-0.5) * t15;
     const scara_real_t t16 = (dq[3] - t1) * (dq_r[3] - t2);
-    const scara_real_t t19 = t17 * t16 - t18 * t15;
+    const scara_real_t t19 = t17 * t16 - t18 * t15; /* link j4: columns */
     const scara_real_t t20 = t18 * t16 + t17 * t15;
-    const scara_real_t t21 = t18 * t12 + t17 * t13;
-    const scara_real_t t22 = SCARA_C(0.0625) * t21;
+    const scara_real_t t21 = t18 * t12 + t17 * t13; /* link j4: motion */
+    const scara_real_t t22 = SCARA_C(0.0625) * t21; /* link j4: columns */
     out[6] = t5 * t19 + t14 * t20 + t22;
     out[25] = SCARA_C(1.6) * (t22 + SCARA_C(0.0171875) * t20);
     out[63] = SCARA_C(-0.5) * t21;
-    const scara_real_t t23 = t18 * t13 - t17 * t12;
-    const scara_real_t t24 = SCARA_C(-0.0625) * t23;
+    const scara_real_t t23 = t18 * t13 - t17 * t12; /* link j4: motion */
+    const scara_real_t t24 = SCARA_C(-0.0625) * t23; /* link j4: columns */
     out[7] = t14 * t19 - t5 * t20 + t24;
     out[26] = SCARA_C(1.6) * (t24 + SCARA_C(0.0171875) * t19);
     out[64] = SCARA_C(0.5) * t23;
     out[8] = SCARA_C(4.0e2) * dq[0];
-    const scara_real_t t25 = scara_sign(dq[0]);
+    const scara_real_t t25 = scara_sign(dq[0]); /* joint j1: coulomb_friction */
     out[9] = SCARA_C(5.0) * t25;
     out[29] = SCARA_C(250.0) * dq[1];
-    const scara_real_t t26 = scara_sign(dq[1]);
+    const scara_real_t t26 = scara_sign(dq[1]); /* joint j2: coulomb_friction */
     out[30] = SCARA_C(5.0) * t26;
     out[31] = SCARA_C(250.0) * ddq_r[1];
     out[51] = SCARA_C(3141.5926535897934) * dq[2];
-    const scara_real_t t27 = scara_sign(dq[2]);
+    const scara_real_t t27 = scara_sign(dq[2]); /* joint j3: coulomb_friction */
     out[52] = SCARA_C(10.0) * t27;
     out[53] = SCARA_C(3141.5926535897934) * ddq_r[2];
     out[73] = SCARA_C(2.0e2) * dq[3];
-    const scara_real_t t28 = scara_sign(dq[3]);
+    const scara_real_t t28 = scara_sign(dq[3]); /* joint j4: coulomb_friction */
     out[74] = SCARA_C(10.0) * t28;
     out[75] = SCARA_C(2.0e2) * ddq_r[3];
     /* always zero */

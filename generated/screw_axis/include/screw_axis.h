@@ -13,7 +13,8 @@
  *
  * Every function returns SCREW_AXIS_STATUS_OK, or the sum of the SCREW_AXIS_STATUS_ bits that apply; all of
  * its outputs are then zero. Inputs are checked by their Euclidean norm, so one that is not finite is
- * found too (not with -ffast-math). Outputs may not overlap inputs. Matrices are row-major.
+ * found too (not with -ffast-math). Outputs may not overlap inputs. Matrices are row-major. In the sources a
+ * remark behind a value says which link or joint it belongs to, and those after it up to the next remark.
  *
  * Coordinates:
  *
@@ -29,7 +30,7 @@
 #define SCREW_AXIS_H
 
 /** Number of this generation: header and sources of different ones do not compile together. */
-#define SCREW_AXIS_GENERATION 0x9823CEB3UL
+#define SCREW_AXIS_GENERATION 0x7400E9F7UL
 
 /** SHA-256 of the description that this is the model of, then after a blank the description's version, if any. */
 #define SCREW_AXIS_MODEL "9d21e4307785b4a34c4e1b8ce4a51c6dc39e1230071915159dd74f3b2739f09b"
@@ -62,6 +63,7 @@
 #define screw_axis_mass_matrix screw_axis_mass_matrix_float
 #define screw_axis_forward_dynamics screw_axis_forward_dynamics_float
 #define screw_axis_energy screw_axis_energy_float
+#define screw_axis_joint_effort screw_axis_joint_effort_float
 #define screw_axis_regressor screw_axis_regressor_float
 #define screw_axis_regressor_standard screw_axis_regressor_standard_float
 #define screw_axis_regressor_packed screw_axis_regressor_packed_float
@@ -72,6 +74,7 @@
 #define screw_axis_mass_matrix_standard screw_axis_mass_matrix_standard_float
 #define screw_axis_forward_dynamics_standard screw_axis_forward_dynamics_standard_float
 #define screw_axis_energy_standard screw_axis_energy_standard_float
+#define screw_axis_joint_effort_standard screw_axis_joint_effort_standard_float
 #define screw_axis_forward_kinematics screw_axis_forward_kinematics_float
 #define screw_axis_jacobian screw_axis_jacobian_float
 #define screw_axis_motor_from_joint screw_axis_motor_from_joint_float
@@ -81,6 +84,8 @@
 #define screw_axis_forward_dynamics_derivatives screw_axis_forward_dynamics_derivatives_float
 #define screw_axis_inverse_dynamics_derivatives_standard screw_axis_inverse_dynamics_derivatives_standard_float
 #define screw_axis_forward_dynamics_derivatives_standard screw_axis_forward_dynamics_derivatives_standard_float
+#define screw_axis_momentum_observer_step screw_axis_momentum_observer_step_float
+#define screw_axis_momentum_observer_step_standard screw_axis_momentum_observer_step_standard_float
 #define screw_axis_check_parameters screw_axis_check_parameters_float
 #define screw_axis_check_parameters_standard screw_axis_check_parameters_standard_float
 #define screw_axis_model screw_axis_model_float
@@ -100,11 +105,16 @@ typedef SCREW_AXIS_REAL screw_axis_real_t;
 #define SCREW_AXIS_N_PARAMETERS           3   /**< base parameters */
 #define SCREW_AXIS_N_STANDARD_PARAMETERS  13  /**< standard parameters */
 #define SCREW_AXIS_N_PACKED               3   /**< structural non-zeros of the regressor */
+#define SCREW_AXIS_N_OBSERVER_STATES      1   /**< state of the observer: the momentum that the model
+                                              expects */
 
-#define SCREW_AXIS_STATUS_OK     0
-#define SCREW_AXIS_STATUS_STROKE 1 /**< a lever would leave its stroke */
-#define SCREW_AXIS_STATUS_PIVOT  2 /**< a pivot of the mass matrix vanishes, or the result is beyond 1e15 */
-#define SCREW_AXIS_STATUS_INPUT  4 /**< an input is not finite or beyond its bound */
+/** SCREW_AXIS_STATUS_OK or bits of the others. */
+typedef unsigned int screw_axis_status_t;
+
+#define SCREW_AXIS_STATUS_OK     0U
+#define SCREW_AXIS_STATUS_STROKE 1U /**< a lever would leave its stroke */
+#define SCREW_AXIS_STATUS_PIVOT  2U /**< a pivot of the mass matrix vanishes, or the result is beyond 1e15 */
+#define SCREW_AXIS_STATUS_INPUT  4U /**< an input is not finite or beyond its bound */
 
 /** Indices of the base parameters. */
 enum {
@@ -148,7 +158,7 @@ const char *screw_axis_model(void);
  *
  * @return SCREW_AXIS_STATUS_OK or SCREW_AXIS_STATUS_INPUT
  */
-int screw_axis_check_parameters(const screw_axis_real_t parameters[SCREW_AXIS_N_PARAMETERS]);
+screw_axis_status_t screw_axis_check_parameters(const screw_axis_real_t parameters[SCREW_AXIS_N_PARAMETERS]);
 
 /**
  * Whether standard parameters can be used: finite, and their norm within its bound. Every function that takes them checks
@@ -156,7 +166,7 @@ int screw_axis_check_parameters(const screw_axis_real_t parameters[SCREW_AXIS_N_
  *
  * @return SCREW_AXIS_STATUS_OK or SCREW_AXIS_STATUS_INPUT
  */
-int screw_axis_check_parameters_standard(const screw_axis_real_t parameters[SCREW_AXIS_N_STANDARD_PARAMETERS]);
+screw_axis_status_t screw_axis_check_parameters_standard(const screw_axis_real_t parameters[SCREW_AXIS_N_STANDARD_PARAMETERS]);
 
 /**
  * Inputs that give the accelerations ddq in the state q, dq; base parameters.
@@ -168,9 +178,9 @@ int screw_axis_check_parameters_standard(const screw_axis_real_t parameters[SCRE
  * @param[out]  out         [1]  [A]      inputs: motor currents, efforts where undriven
  * @return SCREW_AXIS_STATUS_OK or status bits
  *
- * Operations: 8 (6 mul, 2 add, 0 neg), 1 other.
+ * Operations: 8 (6 mul, 2 add, 0 neg), 1 other calls (sign, select and the like).
  */
-int screw_axis_inverse_dynamics(
+screw_axis_status_t screw_axis_inverse_dynamics(
     const screw_axis_real_t q[SCREW_AXIS_N_JOINTS],
     const screw_axis_real_t dq[SCREW_AXIS_N_JOINTS],
     const screw_axis_real_t ddq[SCREW_AXIS_N_JOINTS],
@@ -187,7 +197,7 @@ int screw_axis_inverse_dynamics(
  *
  * Operations: 0 (0 mul, 0 add, 0 neg).
  */
-int screw_axis_gravity(
+screw_axis_status_t screw_axis_gravity(
     const screw_axis_real_t q[SCREW_AXIS_N_JOINTS],
     const screw_axis_real_t parameters[SCREW_AXIS_N_PARAMETERS],
     screw_axis_real_t out[SCREW_AXIS_N_JOINTS]);
@@ -201,9 +211,9 @@ int screw_axis_gravity(
  * @param[out]  out         [1]  [A]    inputs: motor currents, efforts where undriven
  * @return SCREW_AXIS_STATUS_OK or status bits
  *
- * Operations: 5 (4 mul, 1 add, 0 neg), 1 other.
+ * Operations: 5 (4 mul, 1 add, 0 neg), 1 other calls (sign, select and the like).
  */
-int screw_axis_bias(
+screw_axis_status_t screw_axis_bias(
     const screw_axis_real_t q[SCREW_AXIS_N_JOINTS],
     const screw_axis_real_t dq[SCREW_AXIS_N_JOINTS],
     const screw_axis_real_t parameters[SCREW_AXIS_N_PARAMETERS],
@@ -219,7 +229,7 @@ int screw_axis_bias(
  *
  * Operations: 0 (0 mul, 0 add, 0 neg).
  */
-int screw_axis_mass_matrix(
+screw_axis_status_t screw_axis_mass_matrix(
     const screw_axis_real_t q[SCREW_AXIS_N_JOINTS],
     const screw_axis_real_t parameters[SCREW_AXIS_N_PARAMETERS],
     screw_axis_real_t out[SCREW_AXIS_N_JOINTS]);
@@ -234,9 +244,9 @@ int screw_axis_mass_matrix(
  * @param[out]  out         [1]  [m/s^2]  joint accelerations
  * @return SCREW_AXIS_STATUS_OK or status bits
  *
- * Operations: 8 (6 mul, 2 add, 0 neg), 1 div, 1 other.
+ * Operations: 8 (6 mul, 2 add, 0 neg), 1 div, 1 other calls (sign, select and the like).
  */
-int screw_axis_forward_dynamics(
+screw_axis_status_t screw_axis_forward_dynamics(
     const screw_axis_real_t q[SCREW_AXIS_N_JOINTS],
     const screw_axis_real_t dq[SCREW_AXIS_N_JOINTS],
     const screw_axis_real_t input[SCREW_AXIS_N_JOINTS],
@@ -255,12 +265,32 @@ int screw_axis_forward_dynamics(
  *
  * Operations: 3 (3 mul, 0 add, 0 neg).
  */
-int screw_axis_energy(
+screw_axis_status_t screw_axis_energy(
     const screw_axis_real_t q[SCREW_AXIS_N_JOINTS],
     const screw_axis_real_t dq[SCREW_AXIS_N_JOINTS],
     const screw_axis_real_t parameters[SCREW_AXIS_N_PARAMETERS],
     screw_axis_real_t kinetic[1],
     screw_axis_real_t potential[1]);
+
+/**
+ * Efforts of the drives at the joints that give the accelerations ddq in the state q, dq; base
+ * parameters.
+ *
+ * @param[in]   q           [1]  [m]      joint coordinates; norm at most 10000
+ * @param[in]   dq          [1]  [m/s]    joint velocities; norm at most 100000
+ * @param[in]   ddq         [1]  [m/s^2]  joint accelerations; norm at most 1e+08
+ * @param[in]   parameters  [3]           base parameters; norm at most 1e+09
+ * @param[out]  out         [1]  [N]      efforts at the joints
+ * @return SCREW_AXIS_STATUS_OK or status bits
+ *
+ * Operations: 7 (5 mul, 2 add, 0 neg), 1 other calls (sign, select and the like).
+ */
+screw_axis_status_t screw_axis_joint_effort(
+    const screw_axis_real_t q[SCREW_AXIS_N_JOINTS],
+    const screw_axis_real_t dq[SCREW_AXIS_N_JOINTS],
+    const screw_axis_real_t ddq[SCREW_AXIS_N_JOINTS],
+    const screw_axis_real_t parameters[SCREW_AXIS_N_PARAMETERS],
+    screw_axis_real_t out[SCREW_AXIS_N_JOINTS]);
 
 /**
  * Inputs per unit of each base parameter.
@@ -272,9 +302,9 @@ int screw_axis_energy(
  *                                                       row-major
  * @return SCREW_AXIS_STATUS_OK or status bits
  *
- * Operations: 3 (3 mul, 0 add, 0 neg), 1 other.
+ * Operations: 3 (3 mul, 0 add, 0 neg), 1 other calls (sign, select and the like).
  */
-int screw_axis_regressor(
+screw_axis_status_t screw_axis_regressor(
     const screw_axis_real_t q[SCREW_AXIS_N_JOINTS],
     const screw_axis_real_t dq[SCREW_AXIS_N_JOINTS],
     const screw_axis_real_t ddq[SCREW_AXIS_N_JOINTS],
@@ -290,9 +320,9 @@ int screw_axis_regressor(
  *                                                        row-major
  * @return SCREW_AXIS_STATUS_OK or status bits
  *
- * Operations: 4 (4 mul, 0 add, 0 neg), 1 other.
+ * Operations: 4 (4 mul, 0 add, 0 neg), 1 other calls (sign, select and the like).
  */
-int screw_axis_regressor_standard(
+screw_axis_status_t screw_axis_regressor_standard(
     const screw_axis_real_t q[SCREW_AXIS_N_JOINTS],
     const screw_axis_real_t dq[SCREW_AXIS_N_JOINTS],
     const screw_axis_real_t ddq[SCREW_AXIS_N_JOINTS],
@@ -307,9 +337,9 @@ int screw_axis_regressor_standard(
  * @param[out]  out  [3]  [A per unit of the parameter]  structural non-zeros, row after row
  * @return SCREW_AXIS_STATUS_OK or status bits
  *
- * Operations: 3 (3 mul, 0 add, 0 neg), 1 other.
+ * Operations: 3 (3 mul, 0 add, 0 neg), 1 other calls (sign, select and the like).
  */
-int screw_axis_regressor_packed(
+screw_axis_status_t screw_axis_regressor_packed(
     const screw_axis_real_t q[SCREW_AXIS_N_JOINTS],
     const screw_axis_real_t dq[SCREW_AXIS_N_JOINTS],
     const screw_axis_real_t ddq[SCREW_AXIS_N_JOINTS],
@@ -326,9 +356,9 @@ int screw_axis_regressor_packed(
  *                                                         dM/dt - 2 C skew-symmetric; 1 x 3, row-major
  * @return SCREW_AXIS_STATUS_OK or status bits
  *
- * Operations: 3 (3 mul, 0 add, 0 neg), 1 other.
+ * Operations: 3 (3 mul, 0 add, 0 neg), 1 other calls (sign, select and the like).
  */
-int screw_axis_slotine_li_regressor(
+screw_axis_status_t screw_axis_slotine_li_regressor(
     const screw_axis_real_t q[SCREW_AXIS_N_JOINTS],
     const screw_axis_real_t dq[SCREW_AXIS_N_JOINTS],
     const screw_axis_real_t dq_r[SCREW_AXIS_N_JOINTS],
@@ -345,9 +375,9 @@ int screw_axis_slotine_li_regressor(
  * @param[out]  out         [1]   [A]      inputs: motor currents, efforts where undriven
  * @return SCREW_AXIS_STATUS_OK or status bits
  *
- * Operations: 11 (8 mul, 3 add, 0 neg), 1 other.
+ * Operations: 11 (8 mul, 3 add, 0 neg), 1 other calls (sign, select and the like).
  */
-int screw_axis_inverse_dynamics_standard(
+screw_axis_status_t screw_axis_inverse_dynamics_standard(
     const screw_axis_real_t q[SCREW_AXIS_N_JOINTS],
     const screw_axis_real_t dq[SCREW_AXIS_N_JOINTS],
     const screw_axis_real_t ddq[SCREW_AXIS_N_JOINTS],
@@ -364,7 +394,7 @@ int screw_axis_inverse_dynamics_standard(
  *
  * Operations: 0 (0 mul, 0 add, 0 neg).
  */
-int screw_axis_gravity_standard(
+screw_axis_status_t screw_axis_gravity_standard(
     const screw_axis_real_t q[SCREW_AXIS_N_JOINTS],
     const screw_axis_real_t parameters[SCREW_AXIS_N_STANDARD_PARAMETERS],
     screw_axis_real_t out[SCREW_AXIS_N_JOINTS]);
@@ -378,9 +408,9 @@ int screw_axis_gravity_standard(
  * @param[out]  out         [1]   [A]    inputs: motor currents, efforts where undriven
  * @return SCREW_AXIS_STATUS_OK or status bits
  *
- * Operations: 5 (4 mul, 1 add, 0 neg), 1 other.
+ * Operations: 5 (4 mul, 1 add, 0 neg), 1 other calls (sign, select and the like).
  */
-int screw_axis_bias_standard(
+screw_axis_status_t screw_axis_bias_standard(
     const screw_axis_real_t q[SCREW_AXIS_N_JOINTS],
     const screw_axis_real_t dq[SCREW_AXIS_N_JOINTS],
     const screw_axis_real_t parameters[SCREW_AXIS_N_STANDARD_PARAMETERS],
@@ -396,7 +426,7 @@ int screw_axis_bias_standard(
  *
  * Operations: 2 (1 mul, 1 add, 0 neg).
  */
-int screw_axis_mass_matrix_standard(
+screw_axis_status_t screw_axis_mass_matrix_standard(
     const screw_axis_real_t q[SCREW_AXIS_N_JOINTS],
     const screw_axis_real_t parameters[SCREW_AXIS_N_STANDARD_PARAMETERS],
     screw_axis_real_t out[SCREW_AXIS_N_JOINTS]);
@@ -411,9 +441,9 @@ int screw_axis_mass_matrix_standard(
  * @param[out]  out         [1]   [m/s^2]  joint accelerations
  * @return SCREW_AXIS_STATUS_OK or status bits
  *
- * Operations: 10 (7 mul, 3 add, 0 neg), 1 div, 1 other.
+ * Operations: 10 (7 mul, 3 add, 0 neg), 1 div, 1 other calls (sign, select and the like).
  */
-int screw_axis_forward_dynamics_standard(
+screw_axis_status_t screw_axis_forward_dynamics_standard(
     const screw_axis_real_t q[SCREW_AXIS_N_JOINTS],
     const screw_axis_real_t dq[SCREW_AXIS_N_JOINTS],
     const screw_axis_real_t input[SCREW_AXIS_N_JOINTS],
@@ -432,12 +462,32 @@ int screw_axis_forward_dynamics_standard(
  *
  * Operations: 8 (7 mul, 1 add, 0 neg).
  */
-int screw_axis_energy_standard(
+screw_axis_status_t screw_axis_energy_standard(
     const screw_axis_real_t q[SCREW_AXIS_N_JOINTS],
     const screw_axis_real_t dq[SCREW_AXIS_N_JOINTS],
     const screw_axis_real_t parameters[SCREW_AXIS_N_STANDARD_PARAMETERS],
     screw_axis_real_t kinetic[1],
     screw_axis_real_t potential[1]);
+
+/**
+ * Efforts of the drives at the joints that give the accelerations ddq in the state q, dq; standard
+ * parameters.
+ *
+ * @param[in]   q           [1]   [m]      joint coordinates; norm at most 10000
+ * @param[in]   dq          [1]   [m/s]    joint velocities; norm at most 100000
+ * @param[in]   ddq         [1]   [m/s^2]  joint accelerations; norm at most 1e+08
+ * @param[in]   parameters  [13]           standard parameters; norm at most 1e+09
+ * @param[out]  out         [1]   [N]      efforts at the joints
+ * @return SCREW_AXIS_STATUS_OK or status bits
+ *
+ * Operations: 10 (7 mul, 3 add, 0 neg), 1 other calls (sign, select and the like).
+ */
+screw_axis_status_t screw_axis_joint_effort_standard(
+    const screw_axis_real_t q[SCREW_AXIS_N_JOINTS],
+    const screw_axis_real_t dq[SCREW_AXIS_N_JOINTS],
+    const screw_axis_real_t ddq[SCREW_AXIS_N_JOINTS],
+    const screw_axis_real_t parameters[SCREW_AXIS_N_STANDARD_PARAMETERS],
+    screw_axis_real_t out[SCREW_AXIS_N_JOINTS]);
 
 /**
  * Homogeneous transforms from every link's frame to the base, link after link.
@@ -448,7 +498,7 @@ int screw_axis_energy_standard(
  *
  * Operations: 1 (0 mul, 0 add, 1 neg).
  */
-int screw_axis_forward_kinematics(
+screw_axis_status_t screw_axis_forward_kinematics(
     const screw_axis_real_t q[SCREW_AXIS_N_JOINTS],
     screw_axis_real_t out[16 * SCREW_AXIS_N_LINKS]);
 
@@ -461,7 +511,7 @@ int screw_axis_forward_kinematics(
  *
  * Operations: 0 (0 mul, 0 add, 0 neg).
  */
-int screw_axis_jacobian(
+screw_axis_status_t screw_axis_jacobian(
     const screw_axis_real_t q[SCREW_AXIS_N_JOINTS],
     screw_axis_real_t out[6 * SCREW_AXIS_N_JOINTS]);
 
@@ -478,7 +528,7 @@ int screw_axis_jacobian(
  *
  * Operations: 3 (3 mul, 0 add, 0 neg).
  */
-int screw_axis_motor_from_joint(
+screw_axis_status_t screw_axis_motor_from_joint(
     const screw_axis_real_t q[SCREW_AXIS_N_JOINTS],
     const screw_axis_real_t dq[SCREW_AXIS_N_JOINTS],
     const screw_axis_real_t ddq[SCREW_AXIS_N_JOINTS],
@@ -499,7 +549,7 @@ int screw_axis_motor_from_joint(
  *
  * Operations: 3 (3 mul, 0 add, 0 neg).
  */
-int screw_axis_joint_from_motor(
+screw_axis_status_t screw_axis_joint_from_motor(
     const screw_axis_real_t q_m[SCREW_AXIS_N_JOINTS],
     const screw_axis_real_t dq_m[SCREW_AXIS_N_JOINTS],
     const screw_axis_real_t ddq_m[SCREW_AXIS_N_JOINTS],
@@ -510,13 +560,13 @@ int screw_axis_joint_from_motor(
 /**
  * Joint effort per input.
  *
- * @param[in]   q    [1]  [m]            joint coordinates; norm at most 10000
- * @param[out]  out  [1]  [(N) per (A)]  drive gains K
+ * @param[in]   q    [1]  [m]        joint coordinates; norm at most 10000
+ * @param[out]  out  [1]  [N per A]  drive gains K
  * @return SCREW_AXIS_STATUS_OK or status bits
  *
  * Operations: 0 (0 mul, 0 add, 0 neg).
  */
-int screw_axis_drive_gain(
+screw_axis_status_t screw_axis_drive_gain(
     const screw_axis_real_t q[SCREW_AXIS_N_JOINTS],
     screw_axis_real_t out[SCREW_AXIS_N_JOINTS]);
 
@@ -524,19 +574,19 @@ int screw_axis_drive_gain(
  * Inputs that give the accelerations ddq, and their derivatives; at a kink of a law, as of dry
  * friction at rest, the mean of both sides; base parameters.
  *
- * @param[in]   q             [1]  [m]                joint coordinates; norm at most 10000
- * @param[in]   dq            [1]  [m/s]              joint velocities; norm at most 100000
- * @param[in]   ddq           [1]  [m/s^2]            joint accelerations; norm at most 1e+08
- * @param[in]   parameters    [3]                     base parameters; norm at most 1e+09
- * @param[out]  input         [1]  [A]                inputs: motor currents, efforts where undriven
- * @param[out]  input_by_q    [1]  [(A) per (m)]      d input / d q
- * @param[out]  input_by_dq   [1]  [(A) per (m/s)]    d input / d dq
- * @param[out]  input_by_ddq  [1]  [(A) per (m/s^2)]  d input / d ddq
+ * @param[in]   q             [1]  [m]              joint coordinates; norm at most 10000
+ * @param[in]   dq            [1]  [m/s]            joint velocities; norm at most 100000
+ * @param[in]   ddq           [1]  [m/s^2]          joint accelerations; norm at most 1e+08
+ * @param[in]   parameters    [3]                   base parameters; norm at most 1e+09
+ * @param[out]  input         [1]  [A]              inputs: motor currents, efforts where undriven
+ * @param[out]  input_by_q    [1]  [A per m]        d input / d q
+ * @param[out]  input_by_dq   [1]  [A per (m/s)]    d input / d dq
+ * @param[out]  input_by_ddq  [1]  [A per (m/s^2)]  d input / d ddq
  * @return SCREW_AXIS_STATUS_OK or status bits
  *
- * Operations: 10 (8 mul, 2 add, 0 neg), 1 other.
+ * Operations: 10 (8 mul, 2 add, 0 neg), 1 other calls (sign, select and the like).
  */
-int screw_axis_inverse_dynamics_derivatives(
+screw_axis_status_t screw_axis_inverse_dynamics_derivatives(
     const screw_axis_real_t q[SCREW_AXIS_N_JOINTS],
     const screw_axis_real_t dq[SCREW_AXIS_N_JOINTS],
     const screw_axis_real_t ddq[SCREW_AXIS_N_JOINTS],
@@ -556,14 +606,14 @@ int screw_axis_inverse_dynamics_derivatives(
  *                                                      at most 1e+09
  * @param[in]   parameters    [3]                       base parameters; norm at most 1e+09
  * @param[out]  ddq           [1]  [m/s^2]              joint accelerations
- * @param[out]  ddq_by_q      [1]  [(m/s^2) per (m)]    d ddq / d q
+ * @param[out]  ddq_by_q      [1]  [(m/s^2) per m]      d ddq / d q
  * @param[out]  ddq_by_dq     [1]  [(m/s^2) per (m/s)]  d ddq / d dq
- * @param[out]  ddq_by_input  [1]  [(m/s^2) per (A)]    d ddq / d input
+ * @param[out]  ddq_by_input  [1]  [(m/s^2) per A]      d ddq / d input
  * @return SCREW_AXIS_STATUS_OK or status bits
  *
- * Operations: 11 (9 mul, 2 add, 0 neg), 1 div, 1 other.
+ * Operations: 11 (9 mul, 2 add, 0 neg), 1 div, 1 other calls (sign, select and the like).
  */
-int screw_axis_forward_dynamics_derivatives(
+screw_axis_status_t screw_axis_forward_dynamics_derivatives(
     const screw_axis_real_t q[SCREW_AXIS_N_JOINTS],
     const screw_axis_real_t dq[SCREW_AXIS_N_JOINTS],
     const screw_axis_real_t input[SCREW_AXIS_N_JOINTS],
@@ -577,19 +627,19 @@ int screw_axis_forward_dynamics_derivatives(
  * Inputs that give the accelerations ddq, and their derivatives; at a kink of a law, as of dry
  * friction at rest, the mean of both sides; standard parameters.
  *
- * @param[in]   q             [1]   [m]                joint coordinates; norm at most 10000
- * @param[in]   dq            [1]   [m/s]              joint velocities; norm at most 100000
- * @param[in]   ddq           [1]   [m/s^2]            joint accelerations; norm at most 1e+08
- * @param[in]   parameters    [13]                     standard parameters; norm at most 1e+09
- * @param[out]  input         [1]   [A]                inputs: motor currents, efforts where undriven
- * @param[out]  input_by_q    [1]   [(A) per (m)]      d input / d q
- * @param[out]  input_by_dq   [1]   [(A) per (m/s)]    d input / d dq
- * @param[out]  input_by_ddq  [1]   [(A) per (m/s^2)]  d input / d ddq
+ * @param[in]   q             [1]   [m]              joint coordinates; norm at most 10000
+ * @param[in]   dq            [1]   [m/s]            joint velocities; norm at most 100000
+ * @param[in]   ddq           [1]   [m/s^2]          joint accelerations; norm at most 1e+08
+ * @param[in]   parameters    [13]                   standard parameters; norm at most 1e+09
+ * @param[out]  input         [1]   [A]              inputs: motor currents, efforts where undriven
+ * @param[out]  input_by_q    [1]   [A per m]        d input / d q
+ * @param[out]  input_by_dq   [1]   [A per (m/s)]    d input / d dq
+ * @param[out]  input_by_ddq  [1]   [A per (m/s^2)]  d input / d ddq
  * @return SCREW_AXIS_STATUS_OK or status bits
  *
- * Operations: 15 (11 mul, 4 add, 0 neg), 1 other.
+ * Operations: 15 (11 mul, 4 add, 0 neg), 1 other calls (sign, select and the like).
  */
-int screw_axis_inverse_dynamics_derivatives_standard(
+screw_axis_status_t screw_axis_inverse_dynamics_derivatives_standard(
     const screw_axis_real_t q[SCREW_AXIS_N_JOINTS],
     const screw_axis_real_t dq[SCREW_AXIS_N_JOINTS],
     const screw_axis_real_t ddq[SCREW_AXIS_N_JOINTS],
@@ -609,14 +659,14 @@ int screw_axis_inverse_dynamics_derivatives_standard(
  *                                                       at most 1e+09
  * @param[in]   parameters    [13]                       standard parameters; norm at most 1e+09
  * @param[out]  ddq           [1]   [m/s^2]              joint accelerations
- * @param[out]  ddq_by_q      [1]   [(m/s^2) per (m)]    d ddq / d q
+ * @param[out]  ddq_by_q      [1]   [(m/s^2) per m]      d ddq / d q
  * @param[out]  ddq_by_dq     [1]   [(m/s^2) per (m/s)]  d ddq / d dq
- * @param[out]  ddq_by_input  [1]   [(m/s^2) per (A)]    d ddq / d input
+ * @param[out]  ddq_by_input  [1]   [(m/s^2) per A]      d ddq / d input
  * @return SCREW_AXIS_STATUS_OK or status bits
  *
- * Operations: 13 (10 mul, 3 add, 0 neg), 1 div, 1 other.
+ * Operations: 13 (10 mul, 3 add, 0 neg), 1 div, 1 other calls (sign, select and the like).
  */
-int screw_axis_forward_dynamics_derivatives_standard(
+screw_axis_status_t screw_axis_forward_dynamics_derivatives_standard(
     const screw_axis_real_t q[SCREW_AXIS_N_JOINTS],
     const screw_axis_real_t dq[SCREW_AXIS_N_JOINTS],
     const screw_axis_real_t input[SCREW_AXIS_N_JOINTS],
@@ -625,6 +675,64 @@ int screw_axis_forward_dynamics_derivatives_standard(
     screw_axis_real_t ddq_by_q[SCREW_AXIS_N_JOINTS],
     screw_axis_real_t ddq_by_dq[SCREW_AXIS_N_JOINTS],
     screw_axis_real_t ddq_by_input[SCREW_AXIS_N_JOINTS]);
+
+/**
+ * External efforts at the joints by the generalised momentum, with a delay of 1 / gain; state: zero at
+ * first, then what the step before gave; base parameters.
+ *
+ * @param[in]   q           [1]  [m]       joint coordinates; norm at most 10000
+ * @param[in]   dq          [1]  [m/s]     joint velocities; norm at most 100000
+ * @param[in]   input       [1]  [A]       inputs: motor currents, efforts where undriven; norm at most 1e+09
+ * @param[in]   dt          [1]  [s]       time step; norm at most 10000
+ * @param[in]   gain        [1]  [1/s]     gains of the observer, gain dt below 1; norm at most 100000
+ * @param[in]   parameters  [3]            base parameters; norm at most 1e+09
+ * @param[in]   state       [1]  [kg m/s]  state of the observer: the momentum that the model expects; norm at
+ *                                         most 1e+09
+ * @param[out]  state_next  [1]  [kg m/s]  state after the step
+ * @param[out]  external    [1]  [N]       efforts that act on the arm from outside
+ * @return SCREW_AXIS_STATUS_OK or status bits
+ *
+ * Operations: 16 (9 mul, 6 add, 1 neg), 1 other calls (sign, select and the like).
+ */
+screw_axis_status_t screw_axis_momentum_observer_step(
+    const screw_axis_real_t q[SCREW_AXIS_N_JOINTS],
+    const screw_axis_real_t dq[SCREW_AXIS_N_JOINTS],
+    const screw_axis_real_t input[SCREW_AXIS_N_JOINTS],
+    const screw_axis_real_t dt[1],
+    const screw_axis_real_t gain[SCREW_AXIS_N_JOINTS],
+    const screw_axis_real_t parameters[SCREW_AXIS_N_PARAMETERS],
+    const screw_axis_real_t state[SCREW_AXIS_N_OBSERVER_STATES],
+    screw_axis_real_t state_next[SCREW_AXIS_N_OBSERVER_STATES],
+    screw_axis_real_t external[SCREW_AXIS_N_JOINTS]);
+
+/**
+ * External efforts at the joints by the generalised momentum, with a delay of 1 / gain; state: zero at
+ * first, then what the step before gave; standard parameters.
+ *
+ * @param[in]   q           [1]   [m]       joint coordinates; norm at most 10000
+ * @param[in]   dq          [1]   [m/s]     joint velocities; norm at most 100000
+ * @param[in]   input       [1]   [A]       inputs: motor currents, efforts where undriven; norm at most 1e+09
+ * @param[in]   dt          [1]   [s]       time step; norm at most 10000
+ * @param[in]   gain        [1]   [1/s]     gains of the observer, gain dt below 1; norm at most 100000
+ * @param[in]   parameters  [13]            standard parameters; norm at most 1e+09
+ * @param[in]   state       [1]   [kg m/s]  state of the observer: the momentum that the model expects; norm
+ *                                          at most 1e+09
+ * @param[out]  state_next  [1]   [kg m/s]  state after the step
+ * @param[out]  external    [1]   [N]       efforts that act on the arm from outside
+ * @return SCREW_AXIS_STATUS_OK or status bits
+ *
+ * Operations: 19 (11 mul, 7 add, 1 neg), 1 other calls (sign, select and the like).
+ */
+screw_axis_status_t screw_axis_momentum_observer_step_standard(
+    const screw_axis_real_t q[SCREW_AXIS_N_JOINTS],
+    const screw_axis_real_t dq[SCREW_AXIS_N_JOINTS],
+    const screw_axis_real_t input[SCREW_AXIS_N_JOINTS],
+    const screw_axis_real_t dt[1],
+    const screw_axis_real_t gain[SCREW_AXIS_N_JOINTS],
+    const screw_axis_real_t parameters[SCREW_AXIS_N_STANDARD_PARAMETERS],
+    const screw_axis_real_t state[SCREW_AXIS_N_OBSERVER_STATES],
+    screw_axis_real_t state_next[SCREW_AXIS_N_OBSERVER_STATES],
+    screw_axis_real_t external[SCREW_AXIS_N_JOINTS]);
 
 #ifdef __cplusplus
 }

@@ -8,16 +8,16 @@
  */
 #include "screw_axis_private.h"
 
-#if SCREW_AXIS_GENERATION != 0x9823CEB3UL
+#if SCREW_AXIS_GENERATION != 0x7400E9F7UL
 #error "screw_axis.h and screw_axis_check_parameters.c are of different generations: generate the arm again"
 #endif
 
-int screw_axis_check_parameters(const screw_axis_real_t parameters[SCREW_AXIS_N_PARAMETERS])
+screw_axis_status_t screw_axis_check_parameters(const screw_axis_real_t parameters[SCREW_AXIS_N_PARAMETERS])
 {
     return screw_axis_within(parameters, 3, SCREW_AXIS_C(1.0e18)) ? SCREW_AXIS_STATUS_OK : SCREW_AXIS_STATUS_INPUT;
 }
 
-int screw_axis_check_parameters_standard(const screw_axis_real_t parameters[SCREW_AXIS_N_STANDARD_PARAMETERS])
+screw_axis_status_t screw_axis_check_parameters_standard(const screw_axis_real_t parameters[SCREW_AXIS_N_STANDARD_PARAMETERS])
 {
     return screw_axis_within(parameters, 13, SCREW_AXIS_C(1.0e18)) ? SCREW_AXIS_STATUS_OK : SCREW_AXIS_STATUS_INPUT;
 }

@@ -7,7 +7,7 @@
  * Arm screw_axis, description 9d21e4307785b4a3.
  * SPDX-License-Identifier: 0BSD
  *
- * Operations: 11 (9 mul, 2 add, 0 neg), 1 div, 1 other.
+ * Operations: 11 (9 mul, 2 add, 0 neg), 1 div, 1 other calls (sign, select and the like).
  *
  * @param[in]   q             [1]  [m]                  joint coordinates; norm at most 10000
  * @param[in]   dq            [1]  [m/s]                joint velocities; norm at most 100000
@@ -15,9 +15,9 @@
  *                                                      at most 1e+09
  * @param[in]   parameters    [3]                       base parameters; norm at most 1e+09
  * @param[out]  ddq           [1]  [m/s^2]              joint accelerations
- * @param[out]  ddq_by_q      [1]  [(m/s^2) per (m)]    d ddq / d q
+ * @param[out]  ddq_by_q      [1]  [(m/s^2) per m]      d ddq / d q
  * @param[out]  ddq_by_dq     [1]  [(m/s^2) per (m/s)]  d ddq / d dq
- * @param[out]  ddq_by_input  [1]  [(m/s^2) per (A)]    d ddq / d input
+ * @param[out]  ddq_by_input  [1]  [(m/s^2) per A]      d ddq / d input
  *
  * Coordinates:
  *
@@ -31,11 +31,11 @@
  */
 #include "screw_axis_private.h"
 
-#if SCREW_AXIS_GENERATION != 0x9823CEB3UL
+#if SCREW_AXIS_GENERATION != 0x7400E9F7UL
 #error "screw_axis.h and screw_axis_forward_dynamics_derivatives.c are of different generations: generate the arm again"
 #endif
 
-int screw_axis_forward_dynamics_derivatives(
+screw_axis_status_t screw_axis_forward_dynamics_derivatives(
     const screw_axis_real_t q[SCREW_AXIS_N_JOINTS],
     const screw_axis_real_t dq[SCREW_AXIS_N_JOINTS],
     const screw_axis_real_t input[SCREW_AXIS_N_JOINTS],
@@ -46,7 +46,7 @@ int screw_axis_forward_dynamics_derivatives(
     screw_axis_real_t ddq_by_input[SCREW_AXIS_N_JOINTS])
 {
     enum { M1R = 0, FV1, FC1 };
-    int status = SCREW_AXIS_STATUS_OK;
+    screw_axis_status_t status = SCREW_AXIS_STATUS_OK;
 
     if (!screw_axis_within_joints(q, SCREW_AXIS_C(1.0e8))
         || !screw_axis_within_joints(dq, SCREW_AXIS_C(1.0e10))
@@ -69,7 +69,7 @@ int screw_axis_forward_dynamics_derivatives(
         screw_axis_zero(ddq_by_input, 1);
         return SCREW_AXIS_STATUS_PIVOT;
     }
-    const screw_axis_real_t t0 = screw_axis_sign(dq[0]);
+    const screw_axis_real_t t0 = screw_axis_sign(dq[0]); /* joint j1: coulomb_friction */
     const screw_axis_real_t
         t1 = SCREW_AXIS_C(1256.6370614359173) * (parameters[FV1] * (SCREW_AXIS_C(-1256.6370614359173) * dq[0])
         - parameters[FC1] * t0) + SCREW_AXIS_C(37.69911184307752) * input[0];

@@ -6,7 +6,7 @@
  * Arm screw_axis, description 9d21e4307785b4a3.
  * SPDX-License-Identifier: 0BSD
  *
- * Operations: 10 (7 mul, 3 add, 0 neg), 1 div, 1 other.
+ * Operations: 10 (7 mul, 3 add, 0 neg), 1 div, 1 other calls (sign, select and the like).
  *
  * @param[in]   q           [1]   [m]      joint coordinates; norm at most 10000
  * @param[in]   dq          [1]   [m/s]    joint velocities; norm at most 100000
@@ -36,11 +36,11 @@
  */
 #include "screw_axis_private.h"
 
-#if SCREW_AXIS_GENERATION != 0x9823CEB3UL
+#if SCREW_AXIS_GENERATION != 0x7400E9F7UL
 #error "screw_axis.h and screw_axis_forward_dynamics_standard.c are of different generations: generate the arm again"
 #endif
 
-int screw_axis_forward_dynamics_standard(
+screw_axis_status_t screw_axis_forward_dynamics_standard(
     const screw_axis_real_t q[SCREW_AXIS_N_JOINTS],
     const screw_axis_real_t dq[SCREW_AXIS_N_JOINTS],
     const screw_axis_real_t input[SCREW_AXIS_N_JOINTS],
@@ -48,7 +48,7 @@ int screw_axis_forward_dynamics_standard(
     screw_axis_real_t out[SCREW_AXIS_N_JOINTS])
 {
     enum { XX1 = 0, XY1, XZ1, YY1, YZ1, ZZ1, MX1, MY1, MZ1, M1, FV1, FC1, IA1 };
-    int status = SCREW_AXIS_STATUS_OK;
+    screw_axis_status_t status = SCREW_AXIS_STATUS_OK;
 
     if (!screw_axis_within_joints(q, SCREW_AXIS_C(1.0e8))
         || !screw_axis_within_joints(dq, SCREW_AXIS_C(1.0e10))
@@ -67,7 +67,7 @@ int screw_axis_forward_dynamics_standard(
         screw_axis_zero(out, 1);
         return SCREW_AXIS_STATUS_PIVOT;
     }
-    const screw_axis_real_t t1 = screw_axis_sign(dq[0]);
+    const screw_axis_real_t t1 = screw_axis_sign(dq[0]); /* joint j1: coulomb_friction */
     const screw_axis_real_t
         t2 = SCREW_AXIS_C(1256.6370614359173) * (SCREW_AXIS_C(-1256.6370614359173) * dq[0] * parameters[FV1]
         - t1 * parameters[FC1]) + SCREW_AXIS_C(37.69911184307752) * input[0];

@@ -17,15 +17,15 @@
  */
 #include "screw_axis_private.h"
 
-#if SCREW_AXIS_GENERATION != 0x9823CEB3UL
+#if SCREW_AXIS_GENERATION != 0x7400E9F7UL
 #error "screw_axis.h and screw_axis_forward_kinematics.c are of different generations: generate the arm again"
 #endif
 
-int screw_axis_forward_kinematics(
+screw_axis_status_t screw_axis_forward_kinematics(
     const screw_axis_real_t q[SCREW_AXIS_N_JOINTS],
     screw_axis_real_t out[16 * SCREW_AXIS_N_LINKS])
 {
-    int status = SCREW_AXIS_STATUS_OK;
+    screw_axis_status_t status = SCREW_AXIS_STATUS_OK;
 
     if (!screw_axis_within_joints(q, SCREW_AXIS_C(1.0e8))) {
         status |= SCREW_AXIS_STATUS_INPUT;

@@ -24,17 +24,17 @@
  */
 #include "screw_axis_private.h"
 
-#if SCREW_AXIS_GENERATION != 0x9823CEB3UL
+#if SCREW_AXIS_GENERATION != 0x7400E9F7UL
 #error "screw_axis.h and screw_axis_gravity.c are of different generations: generate the arm again"
 #endif
 
-int screw_axis_gravity(
+screw_axis_status_t screw_axis_gravity(
     const screw_axis_real_t q[SCREW_AXIS_N_JOINTS],
     const screw_axis_real_t parameters[SCREW_AXIS_N_PARAMETERS],
     screw_axis_real_t out[SCREW_AXIS_N_JOINTS])
 {
     enum { M1R = 0, FV1, FC1 };
-    int status = SCREW_AXIS_STATUS_OK;
+    screw_axis_status_t status = SCREW_AXIS_STATUS_OK;
 
     if (!screw_axis_within_joints(q, SCREW_AXIS_C(1.0e8))
         || !SCREW_AXIS_PARAMETERS_USABLE(screw_axis_within(parameters, 3, SCREW_AXIS_C(1.0e18)))) {

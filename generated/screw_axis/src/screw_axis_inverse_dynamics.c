@@ -6,7 +6,7 @@
  * Arm screw_axis, description 9d21e4307785b4a3.
  * SPDX-License-Identifier: 0BSD
  *
- * Operations: 8 (6 mul, 2 add, 0 neg), 1 other.
+ * Operations: 8 (6 mul, 2 add, 0 neg), 1 other calls (sign, select and the like).
  *
  * @param[in]   q           [1]  [m]      joint coordinates; norm at most 10000
  * @param[in]   dq          [1]  [m/s]    joint velocities; norm at most 100000
@@ -26,11 +26,11 @@
  */
 #include "screw_axis_private.h"
 
-#if SCREW_AXIS_GENERATION != 0x9823CEB3UL
+#if SCREW_AXIS_GENERATION != 0x7400E9F7UL
 #error "screw_axis.h and screw_axis_inverse_dynamics.c are of different generations: generate the arm again"
 #endif
 
-int screw_axis_inverse_dynamics(
+screw_axis_status_t screw_axis_inverse_dynamics(
     const screw_axis_real_t q[SCREW_AXIS_N_JOINTS],
     const screw_axis_real_t dq[SCREW_AXIS_N_JOINTS],
     const screw_axis_real_t ddq[SCREW_AXIS_N_JOINTS],
@@ -38,7 +38,7 @@ int screw_axis_inverse_dynamics(
     screw_axis_real_t out[SCREW_AXIS_N_JOINTS])
 {
     enum { M1R = 0, FV1, FC1 };
-    int status = SCREW_AXIS_STATUS_OK;
+    screw_axis_status_t status = SCREW_AXIS_STATUS_OK;
 
     if (!screw_axis_within_joints(q, SCREW_AXIS_C(1.0e8))
         || !screw_axis_within_joints(dq, SCREW_AXIS_C(1.0e10))
@@ -51,7 +51,7 @@ int screw_axis_inverse_dynamics(
         return status;
     }
 
-    const screw_axis_real_t t0 = screw_axis_sign(dq[0]);
+    const screw_axis_real_t t0 = screw_axis_sign(dq[0]); /* joint j1: coulomb_friction */
     const screw_axis_real_t
         t1 = SCREW_AXIS_C(33.333333333333336) * (parameters[FV1] * (SCREW_AXIS_C(1256.6370614359173) * dq[0])
         + parameters[FC1] * t0) + SCREW_AXIS_C(0.026525823848649224) * (parameters[M1R] * ddq[0]);

@@ -7,16 +7,16 @@
  * Arm screw_axis, description 9d21e4307785b4a3.
  * SPDX-License-Identifier: 0BSD
  *
- * Operations: 15 (11 mul, 4 add, 0 neg), 1 other.
+ * Operations: 15 (11 mul, 4 add, 0 neg), 1 other calls (sign, select and the like).
  *
- * @param[in]   q             [1]   [m]                joint coordinates; norm at most 10000
- * @param[in]   dq            [1]   [m/s]              joint velocities; norm at most 100000
- * @param[in]   ddq           [1]   [m/s^2]            joint accelerations; norm at most 1e+08
- * @param[in]   parameters    [13]                     standard parameters; norm at most 1e+09
- * @param[out]  input         [1]   [A]                inputs: motor currents, efforts where undriven
- * @param[out]  input_by_q    [1]   [(A) per (m)]      d input / d q
- * @param[out]  input_by_dq   [1]   [(A) per (m/s)]    d input / d dq
- * @param[out]  input_by_ddq  [1]   [(A) per (m/s^2)]  d input / d ddq
+ * @param[in]   q             [1]   [m]              joint coordinates; norm at most 10000
+ * @param[in]   dq            [1]   [m/s]            joint velocities; norm at most 100000
+ * @param[in]   ddq           [1]   [m/s^2]          joint accelerations; norm at most 1e+08
+ * @param[in]   parameters    [13]                   standard parameters; norm at most 1e+09
+ * @param[out]  input         [1]   [A]              inputs: motor currents, efforts where undriven
+ * @param[out]  input_by_q    [1]   [A per m]        d input / d q
+ * @param[out]  input_by_dq   [1]   [A per (m/s)]    d input / d dq
+ * @param[out]  input_by_ddq  [1]   [A per (m/s^2)]  d input / d ddq
  *
  * Coordinates:
  *
@@ -40,11 +40,11 @@
  */
 #include "screw_axis_private.h"
 
-#if SCREW_AXIS_GENERATION != 0x9823CEB3UL
+#if SCREW_AXIS_GENERATION != 0x7400E9F7UL
 #error "screw_axis.h and screw_axis_inverse_dynamics_derivatives_standard.c are of different generations: generate the arm again"
 #endif
 
-int screw_axis_inverse_dynamics_derivatives_standard(
+screw_axis_status_t screw_axis_inverse_dynamics_derivatives_standard(
     const screw_axis_real_t q[SCREW_AXIS_N_JOINTS],
     const screw_axis_real_t dq[SCREW_AXIS_N_JOINTS],
     const screw_axis_real_t ddq[SCREW_AXIS_N_JOINTS],
@@ -55,7 +55,7 @@ int screw_axis_inverse_dynamics_derivatives_standard(
     screw_axis_real_t input_by_ddq[SCREW_AXIS_N_JOINTS])
 {
     enum { XX1 = 0, XY1, XZ1, YY1, YZ1, ZZ1, MX1, MY1, MZ1, M1, FV1, FC1, IA1 };
-    int status = SCREW_AXIS_STATUS_OK;
+    screw_axis_status_t status = SCREW_AXIS_STATUS_OK;
 
     if (!screw_axis_within_joints(q, SCREW_AXIS_C(1.0e8))
         || !screw_axis_within_joints(dq, SCREW_AXIS_C(1.0e10))
@@ -71,7 +71,7 @@ int screw_axis_inverse_dynamics_derivatives_standard(
         return status;
     }
 
-    const screw_axis_real_t t0 = screw_axis_sign(dq[0]);
+    const screw_axis_real_t t0 = screw_axis_sign(dq[0]); /* joint j1: coulomb_friction */
     const screw_axis_real_t t1 = SCREW_AXIS_C(1256.6370614359173) * dq[0] * parameters[FV1]
         + t0 * parameters[FC1] + SCREW_AXIS_C(1256.6370614359173) * ddq[0] * parameters[IA1];
     input[0] = SCREW_AXIS_C(33.333333333333336) * t1

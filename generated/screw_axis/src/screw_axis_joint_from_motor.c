@@ -21,11 +21,11 @@
  */
 #include "screw_axis_private.h"
 
-#if SCREW_AXIS_GENERATION != 0x9823CEB3UL
+#if SCREW_AXIS_GENERATION != 0x7400E9F7UL
 #error "screw_axis.h and screw_axis_joint_from_motor.c are of different generations: generate the arm again"
 #endif
 
-int screw_axis_joint_from_motor(
+screw_axis_status_t screw_axis_joint_from_motor(
     const screw_axis_real_t q_m[SCREW_AXIS_N_JOINTS],
     const screw_axis_real_t dq_m[SCREW_AXIS_N_JOINTS],
     const screw_axis_real_t ddq_m[SCREW_AXIS_N_JOINTS],
@@ -33,7 +33,7 @@ int screw_axis_joint_from_motor(
     screw_axis_real_t dq[SCREW_AXIS_N_JOINTS],
     screw_axis_real_t ddq[SCREW_AXIS_N_JOINTS])
 {
-    int status = SCREW_AXIS_STATUS_OK;
+    screw_axis_status_t status = SCREW_AXIS_STATUS_OK;
 
     if (!screw_axis_within_joints(q_m, SCREW_AXIS_C(1.0e18))
         || !screw_axis_within_joints(dq_m, SCREW_AXIS_C(1.0e18))

@@ -34,17 +34,17 @@
  */
 #include "screw_axis_private.h"
 
-#if SCREW_AXIS_GENERATION != 0x9823CEB3UL
+#if SCREW_AXIS_GENERATION != 0x7400E9F7UL
 #error "screw_axis.h and screw_axis_mass_matrix_standard.c are of different generations: generate the arm again"
 #endif
 
-int screw_axis_mass_matrix_standard(
+screw_axis_status_t screw_axis_mass_matrix_standard(
     const screw_axis_real_t q[SCREW_AXIS_N_JOINTS],
     const screw_axis_real_t parameters[SCREW_AXIS_N_STANDARD_PARAMETERS],
     screw_axis_real_t out[SCREW_AXIS_N_JOINTS])
 {
     enum { XX1 = 0, XY1, XZ1, YY1, YZ1, ZZ1, MX1, MY1, MZ1, M1, FV1, FC1, IA1 };
-    int status = SCREW_AXIS_STATUS_OK;
+    screw_axis_status_t status = SCREW_AXIS_STATUS_OK;
 
     if (!screw_axis_within_joints(q, SCREW_AXIS_C(1.0e8))
         || !SCREW_AXIS_PARAMETERS_USABLE(screw_axis_within(parameters, 13, SCREW_AXIS_C(1.0e18)))) {

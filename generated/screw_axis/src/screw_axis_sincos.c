@@ -13,7 +13,7 @@
  */
 #include "screw_axis_private.h"
 
-#if SCREW_AXIS_GENERATION != 0x9823CEB3UL
+#if SCREW_AXIS_GENERATION != 0x7400E9F7UL
 #error "screw_axis.h and screw_axis_sincos.c are of different generations: generate the arm again"
 #endif
 

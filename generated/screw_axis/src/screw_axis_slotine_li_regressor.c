@@ -6,7 +6,7 @@
  * Arm screw_axis, description 9d21e4307785b4a3.
  * SPDX-License-Identifier: 0BSD
  *
- * Operations: 3 (3 mul, 0 add, 0 neg), 1 other.
+ * Operations: 3 (3 mul, 0 add, 0 neg), 1 other calls (sign, select and the like).
  *
  * @param[in]   q      [1]  [m]                            joint coordinates; norm at most 10000
  * @param[in]   dq     [1]  [m/s]                          joint velocities; norm at most 100000
@@ -25,18 +25,18 @@
  */
 #include "screw_axis_private.h"
 
-#if SCREW_AXIS_GENERATION != 0x9823CEB3UL
+#if SCREW_AXIS_GENERATION != 0x7400E9F7UL
 #error "screw_axis.h and screw_axis_slotine_li_regressor.c are of different generations: generate the arm again"
 #endif
 
-int screw_axis_slotine_li_regressor(
+screw_axis_status_t screw_axis_slotine_li_regressor(
     const screw_axis_real_t q[SCREW_AXIS_N_JOINTS],
     const screw_axis_real_t dq[SCREW_AXIS_N_JOINTS],
     const screw_axis_real_t dq_r[SCREW_AXIS_N_JOINTS],
     const screw_axis_real_t ddq_r[SCREW_AXIS_N_JOINTS],
     screw_axis_real_t out[SCREW_AXIS_N_JOINTS * SCREW_AXIS_N_PARAMETERS])
 {
-    int status = SCREW_AXIS_STATUS_OK;
+    screw_axis_status_t status = SCREW_AXIS_STATUS_OK;
 
     if (!screw_axis_within_joints(q, SCREW_AXIS_C(1.0e8))
         || !screw_axis_within_joints(dq, SCREW_AXIS_C(1.0e10))
@@ -51,7 +51,7 @@ int screw_axis_slotine_li_regressor(
 
     out[0] = SCREW_AXIS_C(0.026525823848649224) * ddq_r[0];
     out[1] = SCREW_AXIS_C(41887.902047863914) * dq[0];
-    const screw_axis_real_t t0 = screw_axis_sign(dq[0]);
+    const screw_axis_real_t t0 = screw_axis_sign(dq[0]); /* joint j1: coulomb_friction */
     out[2] = SCREW_AXIS_C(33.333333333333336) * t0;
     return SCREW_AXIS_STATUS_OK;
 }

@@ -12,7 +12,8 @@
  *
  * Every function returns TWO_FINGERS_STATUS_OK, or the sum of the TWO_FINGERS_STATUS_ bits that apply; all of
  * its outputs are then zero. Inputs are checked by their Euclidean norm, so one that is not finite is
- * found too (not with -ffast-math). Outputs may not overlap inputs. Matrices are row-major.
+ * found too (not with -ffast-math). Outputs may not overlap inputs. Matrices are row-major. In the sources a
+ * remark behind a value says which link or joint it belongs to, and those after it up to the next remark.
  *
  * Coordinates:
  *
@@ -71,7 +72,7 @@
 #define TWO_FINGERS_H
 
 /** Number of this generation: header and sources of different ones do not compile together. */
-#define TWO_FINGERS_GENERATION 0x01C0F172UL
+#define TWO_FINGERS_GENERATION 0x24AB78D7UL
 
 /** SHA-256 of the description that this is the model of, then after a blank the description's version, if any. */
 #define TWO_FINGERS_MODEL "a6b389943be5f64e02da02beae8c9b13d86a3cb7770757fcfde02c5d63e64a26"
@@ -104,6 +105,7 @@
 #define two_fingers_mass_matrix two_fingers_mass_matrix_float
 #define two_fingers_forward_dynamics two_fingers_forward_dynamics_float
 #define two_fingers_energy two_fingers_energy_float
+#define two_fingers_joint_effort two_fingers_joint_effort_float
 #define two_fingers_regressor two_fingers_regressor_float
 #define two_fingers_regressor_standard two_fingers_regressor_standard_float
 #define two_fingers_regressor_packed two_fingers_regressor_packed_float
@@ -114,6 +116,7 @@
 #define two_fingers_mass_matrix_standard two_fingers_mass_matrix_standard_float
 #define two_fingers_forward_dynamics_standard two_fingers_forward_dynamics_standard_float
 #define two_fingers_energy_standard two_fingers_energy_standard_float
+#define two_fingers_joint_effort_standard two_fingers_joint_effort_standard_float
 #define two_fingers_forward_kinematics two_fingers_forward_kinematics_float
 #define two_fingers_jacobian two_fingers_jacobian_float
 #define two_fingers_motor_from_joint two_fingers_motor_from_joint_float
@@ -123,6 +126,8 @@
 #define two_fingers_forward_dynamics_derivatives two_fingers_forward_dynamics_derivatives_float
 #define two_fingers_inverse_dynamics_derivatives_standard two_fingers_inverse_dynamics_derivatives_standard_float
 #define two_fingers_forward_dynamics_derivatives_standard two_fingers_forward_dynamics_derivatives_standard_float
+#define two_fingers_momentum_observer_step two_fingers_momentum_observer_step_float
+#define two_fingers_momentum_observer_step_standard two_fingers_momentum_observer_step_standard_float
 #define two_fingers_check_parameters two_fingers_check_parameters_float
 #define two_fingers_check_parameters_standard two_fingers_check_parameters_standard_float
 #define two_fingers_model two_fingers_model_float
@@ -142,11 +147,16 @@ typedef TWO_FINGERS_REAL two_fingers_real_t;
 #define TWO_FINGERS_N_PARAMETERS           41  /**< base parameters */
 #define TWO_FINGERS_N_STANDARD_PARAMETERS  65  /**< standard parameters */
 #define TWO_FINGERS_N_PACKED               83  /**< structural non-zeros of the regressor */
+#define TWO_FINGERS_N_OBSERVER_STATES      5   /**< state of the observer: the momentum that the model
+                                               expects */
 
-#define TWO_FINGERS_STATUS_OK     0
-#define TWO_FINGERS_STATUS_STROKE 1 /**< a lever would leave its stroke */
-#define TWO_FINGERS_STATUS_PIVOT  2 /**< a pivot of the mass matrix vanishes, or the result is beyond 1e15 */
-#define TWO_FINGERS_STATUS_INPUT  4 /**< an input is not finite or beyond its bound */
+/** TWO_FINGERS_STATUS_OK or bits of the others. */
+typedef unsigned int two_fingers_status_t;
+
+#define TWO_FINGERS_STATUS_OK     0U
+#define TWO_FINGERS_STATUS_STROKE 1U /**< a lever would leave its stroke */
+#define TWO_FINGERS_STATUS_PIVOT  2U /**< a pivot of the mass matrix vanishes, or the result is beyond 1e15 */
+#define TWO_FINGERS_STATUS_INPUT  4U /**< an input is not finite or beyond its bound */
 
 /** Indices of the base parameters. */
 enum {
@@ -280,7 +290,7 @@ const char *two_fingers_model(void);
  *
  * @return TWO_FINGERS_STATUS_OK or TWO_FINGERS_STATUS_INPUT
  */
-int two_fingers_check_parameters(const two_fingers_real_t parameters[TWO_FINGERS_N_PARAMETERS]);
+two_fingers_status_t two_fingers_check_parameters(const two_fingers_real_t parameters[TWO_FINGERS_N_PARAMETERS]);
 
 /**
  * Whether standard parameters can be used: finite, and their norm within its bound. Every function that takes them checks
@@ -288,7 +298,7 @@ int two_fingers_check_parameters(const two_fingers_real_t parameters[TWO_FINGERS
  *
  * @return TWO_FINGERS_STATUS_OK or TWO_FINGERS_STATUS_INPUT
  */
-int two_fingers_check_parameters_standard(const two_fingers_real_t parameters[TWO_FINGERS_N_STANDARD_PARAMETERS]);
+two_fingers_status_t two_fingers_check_parameters_standard(const two_fingers_real_t parameters[TWO_FINGERS_N_STANDARD_PARAMETERS]);
 
 /**
  * Inputs that give the accelerations ddq in the state q, dq; base parameters.
@@ -300,9 +310,9 @@ int two_fingers_check_parameters_standard(const two_fingers_real_t parameters[TW
  * @param[out]  out         [5]   [A]        inputs: motor currents, efforts where undriven
  * @return TWO_FINGERS_STATUS_OK or status bits
  *
- * Operations: 420 (234 mul, 186 add, 0 neg), 8 trig, 5 other.
+ * Operations: 420 (234 mul, 186 add, 0 neg), 8 trig, 5 other calls (sign, select and the like).
  */
-int two_fingers_inverse_dynamics(
+two_fingers_status_t two_fingers_inverse_dynamics(
     const two_fingers_real_t q[TWO_FINGERS_N_JOINTS],
     const two_fingers_real_t dq[TWO_FINGERS_N_JOINTS],
     const two_fingers_real_t ddq[TWO_FINGERS_N_JOINTS],
@@ -319,7 +329,7 @@ int two_fingers_inverse_dynamics(
  *
  * Operations: 34 (24 mul, 10 add, 0 neg), 8 trig.
  */
-int two_fingers_gravity(
+two_fingers_status_t two_fingers_gravity(
     const two_fingers_real_t q[TWO_FINGERS_N_JOINTS],
     const two_fingers_real_t parameters[TWO_FINGERS_N_PARAMETERS],
     two_fingers_real_t out[TWO_FINGERS_N_JOINTS]);
@@ -333,9 +343,9 @@ int two_fingers_gravity(
  * @param[out]  out         [5]   [A]      inputs: motor currents, efforts where undriven
  * @return TWO_FINGERS_STATUS_OK or status bits
  *
- * Operations: 342 (204 mul, 138 add, 0 neg), 8 trig, 5 other.
+ * Operations: 342 (204 mul, 138 add, 0 neg), 8 trig, 5 other calls (sign, select and the like).
  */
-int two_fingers_bias(
+two_fingers_status_t two_fingers_bias(
     const two_fingers_real_t q[TWO_FINGERS_N_JOINTS],
     const two_fingers_real_t dq[TWO_FINGERS_N_JOINTS],
     const two_fingers_real_t parameters[TWO_FINGERS_N_PARAMETERS],
@@ -351,7 +361,7 @@ int two_fingers_bias(
  *
  * Operations: 120 (62 mul, 58 add, 0 neg), 8 trig.
  */
-int two_fingers_mass_matrix(
+two_fingers_status_t two_fingers_mass_matrix(
     const two_fingers_real_t q[TWO_FINGERS_N_JOINTS],
     const two_fingers_real_t parameters[TWO_FINGERS_N_PARAMETERS],
     two_fingers_real_t out[TWO_FINGERS_N_JOINTS * TWO_FINGERS_N_JOINTS]);
@@ -367,9 +377,9 @@ int two_fingers_mass_matrix(
  * @param[out]  out         [5]   [rad/s^2]  joint accelerations
  * @return TWO_FINGERS_STATUS_OK or status bits
  *
- * Operations: 524 (300 mul, 224 add, 0 neg), 5 div, 8 trig, 5 other.
+ * Operations: 524 (300 mul, 224 add, 0 neg), 5 div, 8 trig, 5 other calls (sign, select and the like).
  */
-int two_fingers_forward_dynamics(
+two_fingers_status_t two_fingers_forward_dynamics(
     const two_fingers_real_t q[TWO_FINGERS_N_JOINTS],
     const two_fingers_real_t dq[TWO_FINGERS_N_JOINTS],
     const two_fingers_real_t input[TWO_FINGERS_N_JOINTS],
@@ -388,12 +398,32 @@ int two_fingers_forward_dynamics(
  *
  * Operations: 198 (128 mul, 70 add, 0 neg), 8 trig.
  */
-int two_fingers_energy(
+two_fingers_status_t two_fingers_energy(
     const two_fingers_real_t q[TWO_FINGERS_N_JOINTS],
     const two_fingers_real_t dq[TWO_FINGERS_N_JOINTS],
     const two_fingers_real_t parameters[TWO_FINGERS_N_PARAMETERS],
     two_fingers_real_t kinetic[1],
     two_fingers_real_t potential[1]);
+
+/**
+ * Efforts of the drives at the joints that give the accelerations ddq in the state q, dq; base
+ * parameters.
+ *
+ * @param[in]   q           [5]   [rad]      joint coordinates; norm at most 10000
+ * @param[in]   dq          [5]   [rad/s]    joint velocities; norm at most 100000
+ * @param[in]   ddq         [5]   [rad/s^2]  joint accelerations; norm at most 1e+08
+ * @param[in]   parameters  [41]             base parameters; norm at most 1e+09
+ * @param[out]  out         [5]   [N m]      efforts at the joints
+ * @return TWO_FINGERS_STATUS_OK or status bits
+ *
+ * Operations: 415 (229 mul, 186 add, 0 neg), 8 trig, 5 other calls (sign, select and the like).
+ */
+two_fingers_status_t two_fingers_joint_effort(
+    const two_fingers_real_t q[TWO_FINGERS_N_JOINTS],
+    const two_fingers_real_t dq[TWO_FINGERS_N_JOINTS],
+    const two_fingers_real_t ddq[TWO_FINGERS_N_JOINTS],
+    const two_fingers_real_t parameters[TWO_FINGERS_N_PARAMETERS],
+    two_fingers_real_t out[TWO_FINGERS_N_JOINTS]);
 
 /**
  * Inputs per unit of each base parameter.
@@ -405,9 +435,9 @@ int two_fingers_energy(
  *                                                         row-major
  * @return TWO_FINGERS_STATUS_OK or status bits
  *
- * Operations: 310 (200 mul, 110 add, 0 neg), 8 trig, 5 other.
+ * Operations: 310 (200 mul, 110 add, 0 neg), 8 trig, 5 other calls (sign, select and the like).
  */
-int two_fingers_regressor(
+two_fingers_status_t two_fingers_regressor(
     const two_fingers_real_t q[TWO_FINGERS_N_JOINTS],
     const two_fingers_real_t dq[TWO_FINGERS_N_JOINTS],
     const two_fingers_real_t ddq[TWO_FINGERS_N_JOINTS],
@@ -423,9 +453,9 @@ int two_fingers_regressor(
  *                                                         row-major
  * @return TWO_FINGERS_STATUS_OK or status bits
  *
- * Operations: 343 (218 mul, 117 add, 8 neg), 8 trig, 5 other.
+ * Operations: 343 (218 mul, 117 add, 8 neg), 8 trig, 5 other calls (sign, select and the like).
  */
-int two_fingers_regressor_standard(
+two_fingers_status_t two_fingers_regressor_standard(
     const two_fingers_real_t q[TWO_FINGERS_N_JOINTS],
     const two_fingers_real_t dq[TWO_FINGERS_N_JOINTS],
     const two_fingers_real_t ddq[TWO_FINGERS_N_JOINTS],
@@ -440,9 +470,9 @@ int two_fingers_regressor_standard(
  * @param[out]  out  [83]  [A per unit of the parameter]  structural non-zeros, row after row
  * @return TWO_FINGERS_STATUS_OK or status bits
  *
- * Operations: 310 (200 mul, 110 add, 0 neg), 8 trig, 5 other.
+ * Operations: 310 (200 mul, 110 add, 0 neg), 8 trig, 5 other calls (sign, select and the like).
  */
-int two_fingers_regressor_packed(
+two_fingers_status_t two_fingers_regressor_packed(
     const two_fingers_real_t q[TWO_FINGERS_N_JOINTS],
     const two_fingers_real_t dq[TWO_FINGERS_N_JOINTS],
     const two_fingers_real_t ddq[TWO_FINGERS_N_JOINTS],
@@ -460,9 +490,9 @@ int two_fingers_regressor_packed(
  *                                                           row-major
  * @return TWO_FINGERS_STATUS_OK or status bits
  *
- * Operations: 356 (232 mul, 124 add, 0 neg), 8 trig, 5 other.
+ * Operations: 356 (232 mul, 124 add, 0 neg), 8 trig, 5 other calls (sign, select and the like).
  */
-int two_fingers_slotine_li_regressor(
+two_fingers_status_t two_fingers_slotine_li_regressor(
     const two_fingers_real_t q[TWO_FINGERS_N_JOINTS],
     const two_fingers_real_t dq[TWO_FINGERS_N_JOINTS],
     const two_fingers_real_t dq_r[TWO_FINGERS_N_JOINTS],
@@ -479,9 +509,9 @@ int two_fingers_slotine_li_regressor(
  * @param[out]  out         [5]   [A]        inputs: motor currents, efforts where undriven
  * @return TWO_FINGERS_STATUS_OK or status bits
  *
- * Operations: 505 (272 mul, 233 add, 0 neg), 8 trig, 5 other.
+ * Operations: 505 (272 mul, 233 add, 0 neg), 8 trig, 5 other calls (sign, select and the like).
  */
-int two_fingers_inverse_dynamics_standard(
+two_fingers_status_t two_fingers_inverse_dynamics_standard(
     const two_fingers_real_t q[TWO_FINGERS_N_JOINTS],
     const two_fingers_real_t dq[TWO_FINGERS_N_JOINTS],
     const two_fingers_real_t ddq[TWO_FINGERS_N_JOINTS],
@@ -498,7 +528,7 @@ int two_fingers_inverse_dynamics_standard(
  *
  * Operations: 92 (62 mul, 30 add, 0 neg), 8 trig.
  */
-int two_fingers_gravity_standard(
+two_fingers_status_t two_fingers_gravity_standard(
     const two_fingers_real_t q[TWO_FINGERS_N_JOINTS],
     const two_fingers_real_t parameters[TWO_FINGERS_N_STANDARD_PARAMETERS],
     two_fingers_real_t out[TWO_FINGERS_N_JOINTS]);
@@ -512,9 +542,9 @@ int two_fingers_gravity_standard(
  * @param[out]  out         [5]   [A]      inputs: motor currents, efforts where undriven
  * @return TWO_FINGERS_STATUS_OK or status bits
  *
- * Operations: 404 (229 mul, 175 add, 0 neg), 8 trig, 5 other.
+ * Operations: 404 (229 mul, 175 add, 0 neg), 8 trig, 5 other calls (sign, select and the like).
  */
-int two_fingers_bias_standard(
+two_fingers_status_t two_fingers_bias_standard(
     const two_fingers_real_t q[TWO_FINGERS_N_JOINTS],
     const two_fingers_real_t dq[TWO_FINGERS_N_JOINTS],
     const two_fingers_real_t parameters[TWO_FINGERS_N_STANDARD_PARAMETERS],
@@ -530,7 +560,7 @@ int two_fingers_bias_standard(
  *
  * Operations: 164 (82 mul, 82 add, 0 neg), 8 trig.
  */
-int two_fingers_mass_matrix_standard(
+two_fingers_status_t two_fingers_mass_matrix_standard(
     const two_fingers_real_t q[TWO_FINGERS_N_JOINTS],
     const two_fingers_real_t parameters[TWO_FINGERS_N_STANDARD_PARAMETERS],
     two_fingers_real_t out[TWO_FINGERS_N_JOINTS * TWO_FINGERS_N_JOINTS]);
@@ -546,9 +576,9 @@ int two_fingers_mass_matrix_standard(
  * @param[out]  out         [5]   [rad/s^2]  joint accelerations
  * @return TWO_FINGERS_STATUS_OK or status bits
  *
- * Operations: 628 (345 mul, 283 add, 0 neg), 5 div, 8 trig, 5 other.
+ * Operations: 628 (345 mul, 283 add, 0 neg), 5 div, 8 trig, 5 other calls (sign, select and the like).
  */
-int two_fingers_forward_dynamics_standard(
+two_fingers_status_t two_fingers_forward_dynamics_standard(
     const two_fingers_real_t q[TWO_FINGERS_N_JOINTS],
     const two_fingers_real_t dq[TWO_FINGERS_N_JOINTS],
     const two_fingers_real_t input[TWO_FINGERS_N_JOINTS],
@@ -567,12 +597,32 @@ int two_fingers_forward_dynamics_standard(
  *
  * Operations: 276 (175 mul, 101 add, 0 neg), 8 trig.
  */
-int two_fingers_energy_standard(
+two_fingers_status_t two_fingers_energy_standard(
     const two_fingers_real_t q[TWO_FINGERS_N_JOINTS],
     const two_fingers_real_t dq[TWO_FINGERS_N_JOINTS],
     const two_fingers_real_t parameters[TWO_FINGERS_N_STANDARD_PARAMETERS],
     two_fingers_real_t kinetic[1],
     two_fingers_real_t potential[1]);
+
+/**
+ * Efforts of the drives at the joints that give the accelerations ddq in the state q, dq; standard
+ * parameters.
+ *
+ * @param[in]   q           [5]   [rad]      joint coordinates; norm at most 10000
+ * @param[in]   dq          [5]   [rad/s]    joint velocities; norm at most 100000
+ * @param[in]   ddq         [5]   [rad/s^2]  joint accelerations; norm at most 1e+08
+ * @param[in]   parameters  [65]             standard parameters; norm at most 1e+09
+ * @param[out]  out         [5]   [N m]      efforts at the joints
+ * @return TWO_FINGERS_STATUS_OK or status bits
+ *
+ * Operations: 500 (267 mul, 233 add, 0 neg), 8 trig, 5 other calls (sign, select and the like).
+ */
+two_fingers_status_t two_fingers_joint_effort_standard(
+    const two_fingers_real_t q[TWO_FINGERS_N_JOINTS],
+    const two_fingers_real_t dq[TWO_FINGERS_N_JOINTS],
+    const two_fingers_real_t ddq[TWO_FINGERS_N_JOINTS],
+    const two_fingers_real_t parameters[TWO_FINGERS_N_STANDARD_PARAMETERS],
+    two_fingers_real_t out[TWO_FINGERS_N_JOINTS]);
 
 /**
  * Homogeneous transforms from every link's frame to the base, link after link.
@@ -588,7 +638,7 @@ int two_fingers_energy_standard(
  *
  * Operations: 80 (48 mul, 22 add, 10 neg), 10 trig.
  */
-int two_fingers_forward_kinematics(
+two_fingers_status_t two_fingers_forward_kinematics(
     const two_fingers_real_t q[TWO_FINGERS_N_JOINTS],
     two_fingers_real_t out[16 * TWO_FINGERS_N_LINKS]);
 
@@ -601,7 +651,7 @@ int two_fingers_forward_kinematics(
  *
  * Operations: 25 (17 mul, 7 add, 1 neg), 4 trig.
  */
-int two_fingers_jacobian(
+two_fingers_status_t two_fingers_jacobian(
     const two_fingers_real_t q[TWO_FINGERS_N_JOINTS],
     two_fingers_real_t out[6 * TWO_FINGERS_N_JOINTS]);
 
@@ -618,7 +668,7 @@ int two_fingers_jacobian(
  *
  * Operations: 15 (15 mul, 0 add, 0 neg).
  */
-int two_fingers_motor_from_joint(
+two_fingers_status_t two_fingers_motor_from_joint(
     const two_fingers_real_t q[TWO_FINGERS_N_JOINTS],
     const two_fingers_real_t dq[TWO_FINGERS_N_JOINTS],
     const two_fingers_real_t ddq[TWO_FINGERS_N_JOINTS],
@@ -639,7 +689,7 @@ int two_fingers_motor_from_joint(
  *
  * Operations: 15 (15 mul, 0 add, 0 neg).
  */
-int two_fingers_joint_from_motor(
+two_fingers_status_t two_fingers_joint_from_motor(
     const two_fingers_real_t q_m[TWO_FINGERS_N_JOINTS],
     const two_fingers_real_t dq_m[TWO_FINGERS_N_JOINTS],
     const two_fingers_real_t ddq_m[TWO_FINGERS_N_JOINTS],
@@ -650,13 +700,13 @@ int two_fingers_joint_from_motor(
 /**
  * Joint effort per input.
  *
- * @param[in]   q    [5]  [rad]            joint coordinates; norm at most 10000
- * @param[out]  out  [5]  [(N m) per (A)]  drive gains K
+ * @param[in]   q    [5]  [rad]        joint coordinates; norm at most 10000
+ * @param[out]  out  [5]  [N m per A]  drive gains K
  * @return TWO_FINGERS_STATUS_OK or status bits
  *
  * Operations: 0 (0 mul, 0 add, 0 neg).
  */
-int two_fingers_drive_gain(
+two_fingers_status_t two_fingers_drive_gain(
     const two_fingers_real_t q[TWO_FINGERS_N_JOINTS],
     two_fingers_real_t out[TWO_FINGERS_N_JOINTS]);
 
@@ -664,19 +714,19 @@ int two_fingers_drive_gain(
  * Inputs that give the accelerations ddq, and their derivatives; at a kink of a law, as of dry
  * friction at rest, the mean of both sides; base parameters.
  *
- * @param[in]   q             [5]   [rad]                joint coordinates; norm at most 10000
- * @param[in]   dq            [5]   [rad/s]              joint velocities; norm at most 100000
- * @param[in]   ddq           [5]   [rad/s^2]            joint accelerations; norm at most 1e+08
- * @param[in]   parameters    [41]                       base parameters; norm at most 1e+09
- * @param[out]  input         [5]   [A]                  inputs: motor currents, efforts where undriven
- * @param[out]  input_by_q    [25]  [(A) per (rad)]      d input / d q; 5 x 5, row-major
- * @param[out]  input_by_dq   [25]  [(A) per (rad/s)]    d input / d dq; 5 x 5, row-major
- * @param[out]  input_by_ddq  [25]  [(A) per (rad/s^2)]  d input / d ddq; 5 x 5, row-major
+ * @param[in]   q             [5]   [rad]              joint coordinates; norm at most 10000
+ * @param[in]   dq            [5]   [rad/s]            joint velocities; norm at most 100000
+ * @param[in]   ddq           [5]   [rad/s^2]          joint accelerations; norm at most 1e+08
+ * @param[in]   parameters    [41]                     base parameters; norm at most 1e+09
+ * @param[out]  input         [5]   [A]                inputs: motor currents, efforts where undriven
+ * @param[out]  input_by_q    [25]  [A per rad]        d input / d q; 5 x 5, row-major
+ * @param[out]  input_by_dq   [25]  [A per (rad/s)]    d input / d dq; 5 x 5, row-major
+ * @param[out]  input_by_ddq  [25]  [A per (rad/s^2)]  d input / d ddq; 5 x 5, row-major
  * @return TWO_FINGERS_STATUS_OK or status bits
  *
- * Operations: 1422 (815 mul, 607 add, 0 neg), 8 trig, 5 other.
+ * Operations: 1422 (815 mul, 607 add, 0 neg), 8 trig, 5 other calls (sign, select and the like).
  */
-int two_fingers_inverse_dynamics_derivatives(
+two_fingers_status_t two_fingers_inverse_dynamics_derivatives(
     const two_fingers_real_t q[TWO_FINGERS_N_JOINTS],
     const two_fingers_real_t dq[TWO_FINGERS_N_JOINTS],
     const two_fingers_real_t ddq[TWO_FINGERS_N_JOINTS],
@@ -696,14 +746,14 @@ int two_fingers_inverse_dynamics_derivatives(
  *                                                           norm at most 1e+09
  * @param[in]   parameters    [41]                           base parameters; norm at most 1e+09
  * @param[out]  ddq           [5]   [rad/s^2]                joint accelerations
- * @param[out]  ddq_by_q      [25]  [(rad/s^2) per (rad)]    d ddq / d q; 5 x 5, row-major
+ * @param[out]  ddq_by_q      [25]  [(rad/s^2) per rad]      d ddq / d q; 5 x 5, row-major
  * @param[out]  ddq_by_dq     [25]  [(rad/s^2) per (rad/s)]  d ddq / d dq; 5 x 5, row-major
- * @param[out]  ddq_by_input  [25]  [(rad/s^2) per (A)]      d ddq / d input; 5 x 5, row-major
+ * @param[out]  ddq_by_input  [25]  [(rad/s^2) per A]        d ddq / d input; 5 x 5, row-major
  * @return TWO_FINGERS_STATUS_OK or status bits
  *
- * Operations: 1915 (1105 mul, 810 add, 0 neg), 5 div, 8 trig, 5 other.
+ * Operations: 1915 (1105 mul, 810 add, 0 neg), 5 div, 8 trig, 5 other calls (sign, select and the like).
  */
-int two_fingers_forward_dynamics_derivatives(
+two_fingers_status_t two_fingers_forward_dynamics_derivatives(
     const two_fingers_real_t q[TWO_FINGERS_N_JOINTS],
     const two_fingers_real_t dq[TWO_FINGERS_N_JOINTS],
     const two_fingers_real_t input[TWO_FINGERS_N_JOINTS],
@@ -717,19 +767,19 @@ int two_fingers_forward_dynamics_derivatives(
  * Inputs that give the accelerations ddq, and their derivatives; at a kink of a law, as of dry
  * friction at rest, the mean of both sides; standard parameters.
  *
- * @param[in]   q             [5]   [rad]                joint coordinates; norm at most 10000
- * @param[in]   dq            [5]   [rad/s]              joint velocities; norm at most 100000
- * @param[in]   ddq           [5]   [rad/s^2]            joint accelerations; norm at most 1e+08
- * @param[in]   parameters    [65]                       standard parameters; norm at most 1e+09
- * @param[out]  input         [5]   [A]                  inputs: motor currents, efforts where undriven
- * @param[out]  input_by_q    [25]  [(A) per (rad)]      d input / d q; 5 x 5, row-major
- * @param[out]  input_by_dq   [25]  [(A) per (rad/s)]    d input / d dq; 5 x 5, row-major
- * @param[out]  input_by_ddq  [25]  [(A) per (rad/s^2)]  d input / d ddq; 5 x 5, row-major
+ * @param[in]   q             [5]   [rad]              joint coordinates; norm at most 10000
+ * @param[in]   dq            [5]   [rad/s]            joint velocities; norm at most 100000
+ * @param[in]   ddq           [5]   [rad/s^2]          joint accelerations; norm at most 1e+08
+ * @param[in]   parameters    [65]                     standard parameters; norm at most 1e+09
+ * @param[out]  input         [5]   [A]                inputs: motor currents, efforts where undriven
+ * @param[out]  input_by_q    [25]  [A per rad]        d input / d q; 5 x 5, row-major
+ * @param[out]  input_by_dq   [25]  [A per (rad/s)]    d input / d dq; 5 x 5, row-major
+ * @param[out]  input_by_ddq  [25]  [A per (rad/s^2)]  d input / d ddq; 5 x 5, row-major
  * @return TWO_FINGERS_STATUS_OK or status bits
  *
- * Operations: 1637 (906 mul, 731 add, 0 neg), 8 trig, 5 other.
+ * Operations: 1637 (906 mul, 731 add, 0 neg), 8 trig, 5 other calls (sign, select and the like).
  */
-int two_fingers_inverse_dynamics_derivatives_standard(
+two_fingers_status_t two_fingers_inverse_dynamics_derivatives_standard(
     const two_fingers_real_t q[TWO_FINGERS_N_JOINTS],
     const two_fingers_real_t dq[TWO_FINGERS_N_JOINTS],
     const two_fingers_real_t ddq[TWO_FINGERS_N_JOINTS],
@@ -749,14 +799,14 @@ int two_fingers_inverse_dynamics_derivatives_standard(
  *                                                           norm at most 1e+09
  * @param[in]   parameters    [65]                           standard parameters; norm at most 1e+09
  * @param[out]  ddq           [5]   [rad/s^2]                joint accelerations
- * @param[out]  ddq_by_q      [25]  [(rad/s^2) per (rad)]    d ddq / d q; 5 x 5, row-major
+ * @param[out]  ddq_by_q      [25]  [(rad/s^2) per rad]      d ddq / d q; 5 x 5, row-major
  * @param[out]  ddq_by_dq     [25]  [(rad/s^2) per (rad/s)]  d ddq / d dq; 5 x 5, row-major
- * @param[out]  ddq_by_input  [25]  [(rad/s^2) per (A)]      d ddq / d input; 5 x 5, row-major
+ * @param[out]  ddq_by_input  [25]  [(rad/s^2) per A]        d ddq / d input; 5 x 5, row-major
  * @return TWO_FINGERS_STATUS_OK or status bits
  *
- * Operations: 2163 (1209 mul, 954 add, 0 neg), 5 div, 8 trig, 5 other.
+ * Operations: 2163 (1209 mul, 954 add, 0 neg), 5 div, 8 trig, 5 other calls (sign, select and the like).
  */
-int two_fingers_forward_dynamics_derivatives_standard(
+two_fingers_status_t two_fingers_forward_dynamics_derivatives_standard(
     const two_fingers_real_t q[TWO_FINGERS_N_JOINTS],
     const two_fingers_real_t dq[TWO_FINGERS_N_JOINTS],
     const two_fingers_real_t input[TWO_FINGERS_N_JOINTS],
@@ -765,6 +815,66 @@ int two_fingers_forward_dynamics_derivatives_standard(
     two_fingers_real_t ddq_by_q[TWO_FINGERS_N_JOINTS * TWO_FINGERS_N_JOINTS],
     two_fingers_real_t ddq_by_dq[TWO_FINGERS_N_JOINTS * TWO_FINGERS_N_JOINTS],
     two_fingers_real_t ddq_by_input[TWO_FINGERS_N_JOINTS * TWO_FINGERS_N_JOINTS]);
+
+/**
+ * External efforts at the joints by the generalised momentum, with a delay of 1 / gain; state: zero at
+ * first, then what the step before gave; base parameters.
+ *
+ * @param[in]   q           [5]   [rad]       joint coordinates; norm at most 10000
+ * @param[in]   dq          [5]   [rad/s]     joint velocities; norm at most 100000
+ * @param[in]   input       [5]   [A]         inputs: motor currents, efforts where undriven; norm at most
+ *                                            1e+09
+ * @param[in]   dt          [1]   [s]         time step; norm at most 10000
+ * @param[in]   gain        [5]   [1/s]       gains of the observer, gain dt below 1; norm at most 100000
+ * @param[in]   parameters  [41]              base parameters; norm at most 1e+09
+ * @param[in]   state       [5]   [kg m^2/s]  state of the observer: the momentum that the model expects; norm
+ *                                            at most 1e+09
+ * @param[out]  state_next  [5]   [kg m^2/s]  state after the step
+ * @param[out]  external    [5]   [N m]       efforts that act on the arm from outside
+ * @return TWO_FINGERS_STATUS_OK or status bits
+ *
+ * Operations: 342 (197 mul, 140 add, 5 neg), 8 trig, 5 other calls (sign, select and the like).
+ */
+two_fingers_status_t two_fingers_momentum_observer_step(
+    const two_fingers_real_t q[TWO_FINGERS_N_JOINTS],
+    const two_fingers_real_t dq[TWO_FINGERS_N_JOINTS],
+    const two_fingers_real_t input[TWO_FINGERS_N_JOINTS],
+    const two_fingers_real_t dt[1],
+    const two_fingers_real_t gain[TWO_FINGERS_N_JOINTS],
+    const two_fingers_real_t parameters[TWO_FINGERS_N_PARAMETERS],
+    const two_fingers_real_t state[TWO_FINGERS_N_OBSERVER_STATES],
+    two_fingers_real_t state_next[TWO_FINGERS_N_OBSERVER_STATES],
+    two_fingers_real_t external[TWO_FINGERS_N_JOINTS]);
+
+/**
+ * External efforts at the joints by the generalised momentum, with a delay of 1 / gain; state: zero at
+ * first, then what the step before gave; standard parameters.
+ *
+ * @param[in]   q           [5]   [rad]       joint coordinates; norm at most 10000
+ * @param[in]   dq          [5]   [rad/s]     joint velocities; norm at most 100000
+ * @param[in]   input       [5]   [A]         inputs: motor currents, efforts where undriven; norm at most
+ *                                            1e+09
+ * @param[in]   dt          [1]   [s]         time step; norm at most 10000
+ * @param[in]   gain        [5]   [1/s]       gains of the observer, gain dt below 1; norm at most 100000
+ * @param[in]   parameters  [65]              standard parameters; norm at most 1e+09
+ * @param[in]   state       [5]   [kg m^2/s]  state of the observer: the momentum that the model expects; norm
+ *                                            at most 1e+09
+ * @param[out]  state_next  [5]   [kg m^2/s]  state after the step
+ * @param[out]  external    [5]   [N m]       efforts that act on the arm from outside
+ * @return TWO_FINGERS_STATUS_OK or status bits
+ *
+ * Operations: 461 (266 mul, 190 add, 5 neg), 8 trig, 5 other calls (sign, select and the like).
+ */
+two_fingers_status_t two_fingers_momentum_observer_step_standard(
+    const two_fingers_real_t q[TWO_FINGERS_N_JOINTS],
+    const two_fingers_real_t dq[TWO_FINGERS_N_JOINTS],
+    const two_fingers_real_t input[TWO_FINGERS_N_JOINTS],
+    const two_fingers_real_t dt[1],
+    const two_fingers_real_t gain[TWO_FINGERS_N_JOINTS],
+    const two_fingers_real_t parameters[TWO_FINGERS_N_STANDARD_PARAMETERS],
+    const two_fingers_real_t state[TWO_FINGERS_N_OBSERVER_STATES],
+    two_fingers_real_t state_next[TWO_FINGERS_N_OBSERVER_STATES],
+    two_fingers_real_t external[TWO_FINGERS_N_JOINTS]);
 
 #ifdef __cplusplus
 }

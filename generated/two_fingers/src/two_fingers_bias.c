@@ -6,7 +6,7 @@
  * Arm two_fingers, description a6b389943be5f64e.
  * SPDX-License-Identifier: 0BSD
  *
- * Operations: 342 (204 mul, 138 add, 0 neg), 8 trig, 5 other.
+ * Operations: 342 (204 mul, 138 add, 0 neg), 8 trig, 5 other calls (sign, select and the like).
  *
  * @param[in]   q           [5]   [rad]    joint coordinates; norm at most 10000
  * @param[in]   dq          [5]   [rad/s]  joint velocities; norm at most 100000
@@ -68,11 +68,11 @@
  */
 #include "two_fingers_private.h"
 
-#if TWO_FINGERS_GENERATION != 0x01C0F172UL
+#if TWO_FINGERS_GENERATION != 0x24AB78D7UL
 #error "two_fingers.h and two_fingers_bias.c are of different generations: generate the arm again"
 #endif
 
-int two_fingers_bias(
+two_fingers_status_t two_fingers_bias(
     const two_fingers_real_t q[TWO_FINGERS_N_JOINTS],
     const two_fingers_real_t dq[TWO_FINGERS_N_JOINTS],
     const two_fingers_real_t parameters[TWO_FINGERS_N_PARAMETERS],
@@ -81,7 +81,7 @@ int two_fingers_bias(
     enum { ZZ1R = 0, XX2R, XY2, XZ2R, YZ2, ZZ2R, MX2R, MY2, XX3R, XY3, XZ3, YZ3, ZZ3, MX3, MY3, XX4R, XY4,
         XZ4R, YZ4, ZZ4R, MX4R, MY4, XX5R, XY5, XZ5, YZ5, ZZ5, MX5, MY5, FV1, FC1, FV2, FC2, FV3, FC3, IA3,
         FV4, FC4, FV5, FC5, IA5 };
-    int status = TWO_FINGERS_STATUS_OK;
+    two_fingers_status_t status = TWO_FINGERS_STATUS_OK;
 
     if (!two_fingers_within_joints(q, TWO_FINGERS_C(1.0e8))
         || !two_fingers_within_joints(dq, TWO_FINGERS_C(1.0e10))
@@ -101,138 +101,164 @@ int two_fingers_bias(
     TWO_FINGERS_SINCOS(q[3], &t0, &t3);
     two_fingers_real_t t2, t5;
     TWO_FINGERS_SINCOS(q[4], &t2, &t5);
-    const two_fingers_real_t t1 = t0 * dq[0];
+    const two_fingers_real_t t1 = t0 * dq[0]; /* link right_1: motion */
     const two_fingers_real_t t4 = t3 * dq[0];
-    const two_fingers_real_t t6 = t5 * t4 - t2 * t1;
+    const two_fingers_real_t t6 = t5 * t4 - t2 * t1; /* link right_2: motion */
     const two_fingers_real_t t7 = t6 * t6;
     const two_fingers_real_t t8 = dq[3] + dq[4];
     const two_fingers_real_t t9 = t8 * t8;
     const two_fingers_real_t t10 = t5 * t1 + t2 * t4;
     const two_fingers_real_t t11 = t10 * t6;
+    /* link right_2: force and moment */
     const two_fingers_real_t t12 = parameters[MY5] * t11 - parameters[MX5] * (t7 + t9);
-    const two_fingers_real_t t13 = t10 * t10;
+    const two_fingers_real_t t13 = t10 * t10; /* link right_2: motion */
+    /* link right_2: force and moment */
     const two_fingers_real_t t14 = parameters[MX5] * t11 - parameters[MY5] * (t13 + t9);
-    const two_fingers_real_t t15 = t4 * t4;
+    const two_fingers_real_t t15 = t4 * t4; /* link right_2: motion */
     const two_fingers_real_t t16 = dq[3] * dq[3];
     const two_fingers_real_t t17 = t16 + t15;
     const two_fingers_real_t t18 = t1 * t4;
+    /* link right_2: what it passes on */
     const two_fingers_real_t t19 = parameters[MX4R] * t17 - parameters[MY4] * t18 + (t2 * t14 - t5 * t12);
     const two_fingers_real_t t20 = t2 * t12 + t5 * t14;
-    const two_fingers_real_t t21 = t1 * t1;
+    const two_fingers_real_t t21 = t1 * t1; /* link right_2: motion */
+    /* link right_1: what it passes on */
     const two_fingers_real_t t22 = t0 * (parameters[MX4R] * t18 - parameters[MY4] * (t16 + t21) + t20);
     const two_fingers_real_t t23 = t3 * t19 + t22;
-    const two_fingers_real_t t24 = t10 * t8;
-    const two_fingers_real_t t25 = TWO_FINGERS_C(-2.0) * t24;
-    const two_fingers_real_t t26 = t6 * t8;
-    const two_fingers_real_t t27 = TWO_FINGERS_C(-2.0) * t26;
+    const two_fingers_real_t t24 = t10 * t8; /* link right_2: motion */
+    const two_fingers_real_t t25 = TWO_FINGERS_C(-2.0) * t24; /* link right_2: force and moment */
+    const two_fingers_real_t t26 = t6 * t8; /* link right_2: motion */
+    const two_fingers_real_t t27 = TWO_FINGERS_C(-2.0) * t26; /* link right_2: force and moment */
     const two_fingers_real_t t28 = parameters[MX5] * t25 + parameters[MY5] * t27;
-    const two_fingers_real_t t29 = dq[3] * t1;
+    const two_fingers_real_t t29 = dq[3] * t1; /* link right_1: motion */
     const two_fingers_real_t t30 = TWO_FINGERS_C(-2.0) * t29;
     const two_fingers_real_t t31 = dq[3] * t4;
     const two_fingers_real_t t32 = TWO_FINGERS_C(2.0) * t31;
+    /* link right_2: what it passes on */
     const two_fingers_real_t t33 = parameters[MX4R] * t30 - parameters[MY4] * t32 + t28;
+    /* link right_1: what it passes on */
     const two_fingers_real_t
         t34 = TWO_FINGERS_C(0.03446827135542729) * (TWO_FINGERS_C(0.17364817766693028) * t23
         + TWO_FINGERS_C(0.984807753012208) * t33)
         + TWO_FINGERS_C(0.00607768621834256) * (TWO_FINGERS_C(-0.984807753012208) * t23
         + TWO_FINGERS_C(0.17364817766693028) * t33);
+    /* link right_2: force and moment */
     const two_fingers_real_t t35 = parameters[XX5R] * t26 + parameters[ZZ5] * t26 + parameters[XY5] * t25
         + parameters[XZ5] * t11;
     const two_fingers_real_t t36 = dq[0] * dq[0];
-    const two_fingers_real_t t37 = TWO_FINGERS_C(8.673617379884035e-19) * t36;
-    const two_fingers_real_t t38 = t37 + TWO_FINGERS_C(0.09) * t29;
+    const two_fingers_real_t t37 = TWO_FINGERS_C(8.673617379884035e-19) * t36; /* link right_1: motion */
+    const two_fingers_real_t t38 = t37 + TWO_FINGERS_C(0.09) * t29; /* link right_2: motion */
+    /* link right_2: force and moment */
     const two_fingers_real_t t39 = t35 + parameters[YZ5] * (t7 - t9) + parameters[MY5] * t38;
     const two_fingers_real_t t40 = t24 * (parameters[XX5R] - parameters[ZZ5]) - parameters[XY5] * t27
         - parameters[YZ5] * t11;
     const two_fingers_real_t t41 = t40 - parameters[XZ5] * (t13 - t9) - parameters[MX5] * t38;
+    /* link right_1: force and moment */
     const two_fingers_real_t t42 = parameters[XX4R] * t31 + parameters[ZZ4R] * t31 + parameters[XY4] * t30
         + parameters[XZ4R] * t18;
+    /* link right_2: what it passes on */
     const two_fingers_real_t t43 = t42 + parameters[YZ4] * (t15 - t16) + parameters[MY4] * t37 + (t5 * t39
         - t2 * t41);
+    /* link right_1: force and moment */
     const two_fingers_real_t t44 = t29 * (parameters[XX4R] - parameters[ZZ4R]) + parameters[XY4] * t32
         - parameters[YZ4] * t18;
+    /* link right_2: what it passes on */
     const two_fingers_real_t t45 = t44 + parameters[XZ4R] * (t16 - t21) - parameters[MX4R] * t37 + (t2 * t39
         + t5 * t41 + TWO_FINGERS_C(0.045) * t28);
-    const two_fingers_real_t t47 = t46 * dq[0];
+    const two_fingers_real_t t47 = t46 * dq[0]; /* link left_1: motion */
     const two_fingers_real_t t50 = t49 * dq[0];
-    const two_fingers_real_t t52 = t51 * t50 - t48 * t47;
+    const two_fingers_real_t t52 = t51 * t50 - t48 * t47; /* link left_2: motion */
     const two_fingers_real_t t53 = dq[1] + dq[2];
     const two_fingers_real_t t54 = t52 * t53;
     const two_fingers_real_t t55 = t51 * t47 + t48 * t50;
     const two_fingers_real_t t56 = t55 * t53;
-    const two_fingers_real_t t57 = TWO_FINGERS_C(-2.0) * t56;
-    const two_fingers_real_t t58 = t55 * t52;
+    const two_fingers_real_t t57 = TWO_FINGERS_C(-2.0) * t56; /* link left_2: force and moment */
+    const two_fingers_real_t t58 = t55 * t52; /* link left_2: motion */
+    /* link left_2: force and moment */
     const two_fingers_real_t t59 = parameters[XX3R] * t54 + parameters[ZZ3] * t54 + parameters[XY3] * t57
         + parameters[XZ3] * t58;
-    const two_fingers_real_t t60 = t52 * t52;
+    const two_fingers_real_t t60 = t52 * t52; /* link left_2: motion */
     const two_fingers_real_t t61 = t53 * t53;
-    const two_fingers_real_t t62 = dq[1] * t47;
-    const two_fingers_real_t t63 = TWO_FINGERS_C(0.1) * t62;
+    const two_fingers_real_t t62 = dq[1] * t47; /* link left_1: motion */
+    const two_fingers_real_t t63 = TWO_FINGERS_C(0.1) * t62; /* link left_2: motion */
+    /* link left_2: force and moment */
     const two_fingers_real_t t64 = t59 + parameters[YZ3] * (t60 - t61) + parameters[MY3] * t63;
     const two_fingers_real_t t65 = TWO_FINGERS_C(-2.0) * t54;
     const two_fingers_real_t t66 = t56 * (parameters[XX3R] - parameters[ZZ3]) - parameters[XY3] * t65
         - parameters[YZ3] * t58;
-    const two_fingers_real_t t67 = t55 * t55;
+    const two_fingers_real_t t67 = t55 * t55; /* link left_2: motion */
+    /* link left_2: force and moment */
     const two_fingers_real_t t68 = t66 - parameters[XZ3] * (t67 - t61) - parameters[MX3] * t63;
-    const two_fingers_real_t t69 = dq[1] * t50;
+    const two_fingers_real_t t69 = dq[1] * t50; /* link left_1: motion */
     const two_fingers_real_t t70 = TWO_FINGERS_C(-2.0) * t62;
     const two_fingers_real_t t71 = t47 * t50;
+    /* link left_1: force and moment */
     const two_fingers_real_t t72 = parameters[XX2R] * t69 + parameters[ZZ2R] * t69 + parameters[XY2] * t70
         + parameters[XZ2R] * t71;
-    const two_fingers_real_t t73 = t50 * t50;
+    const two_fingers_real_t t73 = t50 * t50; /* link left_1: motion */
     const two_fingers_real_t t74 = dq[1] * dq[1];
+    /* link left_2: what it passes on */
     const two_fingers_real_t t75 = t72 + parameters[YZ2] * (t73 - t74) + (t51 * t64 - t48 * t68);
+    /* link left_2: force and moment */
     const two_fingers_real_t t76 = parameters[MX3] * t57 + parameters[MY3] * t65;
-    const two_fingers_real_t t77 = TWO_FINGERS_C(2.0) * t69;
+    const two_fingers_real_t t77 = TWO_FINGERS_C(2.0) * t69; /* link left_1: motion */
+    /* link left_1: force and moment */
     const two_fingers_real_t t78 = t62 * (parameters[XX2R] - parameters[ZZ2R]) + parameters[XY2] * t77
         - parameters[YZ2] * t71;
-    const two_fingers_real_t t79 = t47 * t47;
+    const two_fingers_real_t t79 = t47 * t47; /* link left_1: motion */
+    /* link left_2: what it passes on */
     const two_fingers_real_t t80 = t78 + parameters[XZ2R] * (t74 - t79) + (t48 * t64 + t51 * t68
         + TWO_FINGERS_C(0.05) * t76);
+    /* link left_1: what it passes on */
     const two_fingers_real_t t81 = t46 * t75 + t49 * t80 + TWO_FINGERS_C(0.03) * (parameters[MX2R] * t70
         - parameters[MY2] * t77 + t76);
     const two_fingers_real_t t82 = TWO_FINGERS_C(0.4166666666666667) * (t0 * t43 + t3 * t45 + t34 + t81);
-    const two_fingers_real_t t83 = two_fingers_sign(dq[0]);
+    const two_fingers_real_t t83 = two_fingers_sign(dq[0]); /* joint wrist: coulomb_friction */
     const two_fingers_real_t t84 = TWO_FINGERS_C(25.0) * (parameters[FV1] * (TWO_FINGERS_C(60.0) * dq[0])
         + parameters[FC1] * t83) + t82;
     out[0] = t84;
-    const two_fingers_real_t t85 = TWO_FINGERS_C(0.03) * t36;
+    const two_fingers_real_t t85 = TWO_FINGERS_C(0.03) * t36; /* link left_1: motion */
     const two_fingers_real_t t86 = t49 * t85 + TWO_FINGERS_C(-9.81) * t46;
-    const two_fingers_real_t t87 = t86 + TWO_FINGERS_C(0.05) * (t74 + t73);
-    const two_fingers_real_t t88 = t46 * t85 + TWO_FINGERS_C(9.81) * t49;
-    const two_fingers_real_t t89 = t88 + TWO_FINGERS_C(0.05) * t71;
+    const two_fingers_real_t t87 = t86 + TWO_FINGERS_C(0.05) * (t74 + t73); /* link left_2: motion */
+    const two_fingers_real_t t88 = t46 * t85 + TWO_FINGERS_C(9.81) * t49; /* link left_1: motion */
+    const two_fingers_real_t t89 = t88 + TWO_FINGERS_C(0.05) * t71; /* link left_2: motion */
+    /* link left_2: force and moment */
     const two_fingers_real_t t90 = parameters[MX3] * (t48 * t87 + t51 * t89) + parameters[MY3] * (t51 * t87
         - t48 * t89);
     const two_fingers_real_t t91 = parameters[XY3] * (t67 - t60) - parameters[XX3R] * t58 + t90;
+    /* link left_2: what it passes on */
     const two_fingers_real_t t92 = t48 * (parameters[MY3] * t58 - parameters[MX3] * (t60 + t61))
         + t51 * (parameters[MX3] * t58 - parameters[MY3] * (t67 + t61));
+    /* link left_1: force and moment */
     const two_fingers_real_t t93 = parameters[XY2] * (t79 - t73) - parameters[XX2R] * t71
         + (parameters[MX2R] * t88 + parameters[MY2] * t86);
-    const two_fingers_real_t t94 = two_fingers_sign(dq[1]);
+    const two_fingers_real_t t94 = two_fingers_sign(dq[1]); /* joint left_1: coulomb_friction */
     const two_fingers_real_t t95 = TWO_FINGERS_C(50.0) * (parameters[FV2] * (TWO_FINGERS_C(30.0) * dq[1])
         + parameters[FC2] * t94) + TWO_FINGERS_C(1.6666666666666667) * (t93 + (t91
         + TWO_FINGERS_C(0.05) * t92));
     out[1] = t95;
-    const two_fingers_real_t t96 = two_fingers_sign(dq[2]);
+    const two_fingers_real_t t96 = two_fingers_sign(dq[2]); /* joint left_2: coulomb_friction */
     const two_fingers_real_t t97 = TWO_FINGERS_C(50.0) * (parameters[FV3] * (TWO_FINGERS_C(30.0) * dq[2])
         + parameters[FC3] * t96) + TWO_FINGERS_C(1.6666666666666667) * t91;
     out[2] = t97;
-    const two_fingers_real_t t98 = TWO_FINGERS_C(0.034999999999999996) * t36;
+    const two_fingers_real_t t98 = TWO_FINGERS_C(0.034999999999999996) * t36; /* link right_1: motion */
     const two_fingers_real_t t99 = t3 * t98 + TWO_FINGERS_C(-9.81) * t0;
-    const two_fingers_real_t t100 = t99 + TWO_FINGERS_C(0.045) * t17;
-    const two_fingers_real_t t101 = t0 * t98 + TWO_FINGERS_C(9.81) * t3;
-    const two_fingers_real_t t102 = t101 + TWO_FINGERS_C(0.045) * t18;
+    const two_fingers_real_t t100 = t99 + TWO_FINGERS_C(0.045) * t17; /* link right_2: motion */
+    const two_fingers_real_t t101 = t0 * t98 + TWO_FINGERS_C(9.81) * t3; /* link right_1: motion */
+    const two_fingers_real_t t102 = t101 + TWO_FINGERS_C(0.045) * t18; /* link right_2: motion */
+    /* link right_2: force and moment */
     const two_fingers_real_t t103 = parameters[MX5] * (t2 * t100 + t5 * t102) + parameters[MY5] * (t5 * t100
         - t2 * t102);
     const two_fingers_real_t t104 = parameters[XY5] * (t13 - t7) - parameters[XX5R] * t11 + t103;
+    /* link right_1: force and moment */
     const two_fingers_real_t t105 = parameters[XY4] * (t21 - t15) - parameters[XX4R] * t18
         + (parameters[MX4R] * t101 + parameters[MY4] * t99);
-    const two_fingers_real_t t106 = two_fingers_sign(dq[3]);
+    const two_fingers_real_t t106 = two_fingers_sign(dq[3]); /* joint right_1: coulomb_friction */
     const two_fingers_real_t t107 = TWO_FINGERS_C(50.0) * (parameters[FV4] * (TWO_FINGERS_C(30.0) * dq[3])
         + parameters[FC4] * t106) + TWO_FINGERS_C(1.6666666666666667) * (t105 + (t104
         + TWO_FINGERS_C(0.045) * t20));
     out[3] = t107;
-    const two_fingers_real_t t108 = two_fingers_sign(dq[4]);
+    const two_fingers_real_t t108 = two_fingers_sign(dq[4]); /* joint right_2: coulomb_friction */
     const two_fingers_real_t t109 = TWO_FINGERS_C(50.0) * (parameters[FV5] * (TWO_FINGERS_C(30.0) * dq[4])
         + parameters[FC5] * t108) + TWO_FINGERS_C(1.6666666666666667) * t104;
     out[4] = t109;

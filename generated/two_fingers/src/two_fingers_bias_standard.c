@@ -6,7 +6,7 @@
  * Arm two_fingers, description a6b389943be5f64e.
  * SPDX-License-Identifier: 0BSD
  *
- * Operations: 404 (229 mul, 175 add, 0 neg), 8 trig, 5 other.
+ * Operations: 404 (229 mul, 175 add, 0 neg), 8 trig, 5 other calls (sign, select and the like).
  *
  * @param[in]   q           [5]   [rad]    joint coordinates; norm at most 10000
  * @param[in]   dq          [5]   [rad/s]  joint velocities; norm at most 100000
@@ -91,11 +91,11 @@
  */
 #include "two_fingers_private.h"
 
-#if TWO_FINGERS_GENERATION != 0x01C0F172UL
+#if TWO_FINGERS_GENERATION != 0x24AB78D7UL
 #error "two_fingers.h and two_fingers_bias_standard.c are of different generations: generate the arm again"
 #endif
 
-int two_fingers_bias_standard(
+two_fingers_status_t two_fingers_bias_standard(
     const two_fingers_real_t q[TWO_FINGERS_N_JOINTS],
     const two_fingers_real_t dq[TWO_FINGERS_N_JOINTS],
     const two_fingers_real_t parameters[TWO_FINGERS_N_STANDARD_PARAMETERS],
@@ -105,7 +105,7 @@ int two_fingers_bias_standard(
         M2, XX3, XY3, XZ3, YY3, YZ3, ZZ3, MX3, MY3, MZ3, M3, XX4, XY4, XZ4, YY4, YZ4, ZZ4, MX4, MY4, MZ4, M4,
         XX5, XY5, XZ5, YY5, YZ5, ZZ5, MX5, MY5, MZ5, M5, FV1, FC1, IA1, FV2, FC2, IA2, FV3, FC3, IA3, FV4,
         FC4, IA4, FV5, FC5, IA5 };
-    int status = TWO_FINGERS_STATUS_OK;
+    two_fingers_status_t status = TWO_FINGERS_STATUS_OK;
 
     if (!two_fingers_within_joints(q, TWO_FINGERS_C(1.0e8))
         || !two_fingers_within_joints(dq, TWO_FINGERS_C(1.0e10))
@@ -125,17 +125,17 @@ int two_fingers_bias_standard(
     TWO_FINGERS_SINCOS(q[3], &t5, &t0);
     two_fingers_real_t t15, t10;
     TWO_FINGERS_SINCOS(q[4], &t15, &t10);
-    const two_fingers_real_t t1 = t0 * dq[0];
-    const two_fingers_real_t t2 = t1 * t1;
+    const two_fingers_real_t t1 = t0 * dq[0]; /* link right_1: motion */
+    const two_fingers_real_t t2 = t1 * t1; /* link right_2: motion */
     const two_fingers_real_t t3 = dq[3] * dq[3];
     const two_fingers_real_t t4 = t2 + t3;
-    const two_fingers_real_t t6 = dq[0] * dq[0];
-    const two_fingers_real_t t7 = TWO_FINGERS_C(0.034999999999999996) * t6;
+    const two_fingers_real_t t6 = dq[0] * dq[0]; /* link wrist: motion */
+    const two_fingers_real_t t7 = TWO_FINGERS_C(0.034999999999999996) * t6; /* link right_1: motion */
     const two_fingers_real_t t8 = TWO_FINGERS_C(-9.81) * t5 + t0 * t7;
-    const two_fingers_real_t t9 = TWO_FINGERS_C(0.045) * t4 + t8;
-    const two_fingers_real_t t11 = TWO_FINGERS_C(9.81) * t0 + t5 * t7;
+    const two_fingers_real_t t9 = TWO_FINGERS_C(0.045) * t4 + t8; /* link right_2: motion */
+    const two_fingers_real_t t11 = TWO_FINGERS_C(9.81) * t0 + t5 * t7; /* link right_1: motion */
     const two_fingers_real_t t12 = t5 * dq[0];
-    const two_fingers_real_t t13 = t12 * t1;
+    const two_fingers_real_t t13 = t12 * t1; /* link right_2: motion */
     const two_fingers_real_t t14 = t11 + TWO_FINGERS_C(0.045) * t13;
     const two_fingers_real_t t16 = t10 * t9 - t15 * t14;
     const two_fingers_real_t t17 = t15 * t12 - t10 * t1;
@@ -144,40 +144,47 @@ int two_fingers_bias_standard(
     const two_fingers_real_t t20 = t19 * t19;
     const two_fingers_real_t t21 = t10 * t12 + t15 * t1;
     const two_fingers_real_t t22 = t21 * t17;
+    /* link right_2: force and moment */
     const two_fingers_real_t t23 = parameters[M5] * t16 + (parameters[MX5] * (t20 + t18)
         + parameters[MY5] * t22);
-    const two_fingers_real_t t24 = t15 * t9 + t10 * t14;
+    const two_fingers_real_t t24 = t15 * t9 + t10 * t14; /* link right_2: motion */
     const two_fingers_real_t t25 = t21 * t21;
+    /* link right_2: force and moment */
     const two_fingers_real_t t26 = parameters[M5] * t24 - (parameters[MX5] * t22 + parameters[MY5] * (t20
         + t25));
+    /* link right_2: what it passes on */
     const two_fingers_real_t t27 = parameters[M4] * t8 + (t4 * parameters[MX4] - t13 * parameters[MY4])
         + (t10 * t23 + t15 * t26);
     const two_fingers_real_t t28 = t10 * t26 - t15 * t23;
-    const two_fingers_real_t t29 = t12 * t12;
+    const two_fingers_real_t t29 = t12 * t12; /* link right_2: motion */
+    /* link right_1: force and moment */
     const two_fingers_real_t t30 = parameters[M4] * t11 + (t13 * parameters[MX4] - (t29
         + t3) * parameters[MY4]);
-    const two_fingers_real_t t31 = t0 * t27 + t5 * (t30 + t28);
-    const two_fingers_real_t t32 = t19 * t21;
-    const two_fingers_real_t t33 = TWO_FINGERS_C(-2.0) * t32;
-    const two_fingers_real_t t34 = t19 * t17;
-    const two_fingers_real_t t35 = TWO_FINGERS_C(2.0) * t34;
+    const two_fingers_real_t t31 = t0 * t27 + t5 * (t30 + t28); /* link right_1: what it passes on */
+    const two_fingers_real_t t32 = t19 * t21; /* link right_2: motion */
+    const two_fingers_real_t t33 = TWO_FINGERS_C(-2.0) * t32; /* link right_2: force and moment */
+    const two_fingers_real_t t34 = t19 * t17; /* link right_2: motion */
+    const two_fingers_real_t t35 = TWO_FINGERS_C(2.0) * t34; /* link right_2: force and moment */
     const two_fingers_real_t t36 = parameters[MX5] * t33 + parameters[MY5] * t35 + parameters[MZ5] * (t25
         + t18);
-    const two_fingers_real_t t37 = TWO_FINGERS_C(-8.673617379884035e-19) * t6;
+    const two_fingers_real_t t37 = TWO_FINGERS_C(-8.673617379884035e-19) * t6; /* link right_1: motion */
     const two_fingers_real_t t38 = dq[3] * t12;
-    const two_fingers_real_t t39 = TWO_FINGERS_C(0.09) * t38 - t37;
-    const two_fingers_real_t t40 = t36 - parameters[M5] * t39;
-    const two_fingers_real_t t41 = TWO_FINGERS_C(-2.0) * t38;
+    const two_fingers_real_t t39 = TWO_FINGERS_C(0.09) * t38 - t37; /* link right_2: motion */
+    const two_fingers_real_t t40 = t36 - parameters[M5] * t39; /* link right_2: force and moment */
+    const two_fingers_real_t t41 = TWO_FINGERS_C(-2.0) * t38; /* link right_1: motion */
     const two_fingers_real_t t42 = dq[3] * t1;
     const two_fingers_real_t t43 = TWO_FINGERS_C(2.0) * t42;
+    /* link right_1: force and moment */
     const two_fingers_real_t t44 = t41 * parameters[MX4] - t43 * parameters[MY4] + (t29
         + t2) * parameters[MZ4];
-    const two_fingers_real_t t45 = parameters[M4] * t37 + t44 + t40;
+    const two_fingers_real_t t45 = parameters[M4] * t37 + t44 + t40; /* link right_2: what it passes on */
+    /* link right_1: what it passes on */
     const two_fingers_real_t
         t46 = TWO_FINGERS_C(0.03446827135542729) * (TWO_FINGERS_C(0.17364817766693028) * t31
         + TWO_FINGERS_C(0.984807753012208) * t45)
         + TWO_FINGERS_C(0.00607768621834256) * (TWO_FINGERS_C(-0.984807753012208) * t31
         + TWO_FINGERS_C(0.17364817766693028) * t45);
+    /* link right_2: force and moment */
     const two_fingers_real_t t47 = t34 * (parameters[YY5] - parameters[ZZ5]) - parameters[XX5] * t34
         + parameters[XY5] * t33;
     const two_fingers_real_t t48 = t47 - parameters[XZ5] * t22 + parameters[YZ5] * (t18 - t20)
@@ -186,6 +193,7 @@ int two_fingers_bias_standard(
         + parameters[XY5] * t35;
     const two_fingers_real_t t50 = t49 - parameters[YZ5] * t22 - parameters[XZ5] * (t20 - t25)
         + (parameters[MZ5] * t16 + parameters[MX5] * t39);
+    /* link right_1: force and moment */
     const two_fingers_real_t t51 = t42 * parameters[XX4] + t42 * (parameters[ZZ4] - parameters[YY4])
         + t41 * parameters[XY4];
     const two_fingers_real_t t52 = t51 + t13 * parameters[XZ4] + (t2 - t3) * parameters[YZ4]
@@ -194,93 +202,109 @@ int two_fingers_bias_standard(
         + t43 * parameters[XY4];
     const two_fingers_real_t t54 = t53 - t13 * parameters[YZ4] + (t3 - t29) * parameters[XZ4]
         + (parameters[MX4] * t37 - parameters[MZ4] * t8);
+    /* link right_2: what it passes on */
     const two_fingers_real_t t55 = t54 + (t15 * t48 - t10 * t50 + TWO_FINGERS_C(0.045) * t40);
+    /* link right_1: what it passes on */
     const two_fingers_real_t t56 = t5 * (t52 + (t10 * t48 + t15 * t50)) + t0 * t55;
-    const two_fingers_real_t t58 = t57 * dq[0];
+    const two_fingers_real_t t58 = t57 * dq[0]; /* link left_1: motion */
     const two_fingers_real_t t61 = t60 * dq[0];
-    const two_fingers_real_t t63 = t59 * t58 - t62 * t61;
+    const two_fingers_real_t t63 = t59 * t58 - t62 * t61; /* link left_2: motion */
     const two_fingers_real_t t64 = dq[1] + dq[2];
     const two_fingers_real_t t65 = t64 * t63;
     const two_fingers_real_t t66 = t62 * t58 + t59 * t61;
     const two_fingers_real_t t67 = t64 * t66;
-    const two_fingers_real_t t68 = TWO_FINGERS_C(-2.0) * t67;
+    const two_fingers_real_t t68 = TWO_FINGERS_C(-2.0) * t67; /* link left_2: force and moment */
     const two_fingers_real_t t69 = t65 * (parameters[YY3] - parameters[ZZ3]) - parameters[XX3] * t65
         + parameters[XY3] * t68;
-    const two_fingers_real_t t70 = t66 * t63;
+    const two_fingers_real_t t70 = t66 * t63; /* link left_2: motion */
     const two_fingers_real_t t71 = t63 * t63;
     const two_fingers_real_t t72 = t64 * t64;
-    const two_fingers_real_t t73 = TWO_FINGERS_C(0.03) * t6;
+    const two_fingers_real_t t73 = TWO_FINGERS_C(0.03) * t6; /* link left_1: motion */
     const two_fingers_real_t t74 = t60 * t73 + TWO_FINGERS_C(-9.81) * t57;
     const two_fingers_real_t t75 = t61 * t61;
     const two_fingers_real_t t76 = dq[1] * dq[1];
-    const two_fingers_real_t t77 = t74 + TWO_FINGERS_C(0.05) * (t75 + t76);
-    const two_fingers_real_t t78 = t57 * t73 + TWO_FINGERS_C(9.81) * t60;
+    const two_fingers_real_t t77 = t74 + TWO_FINGERS_C(0.05) * (t75 + t76); /* link left_2: motion */
+    const two_fingers_real_t t78 = t57 * t73 + TWO_FINGERS_C(9.81) * t60; /* link left_1: motion */
     const two_fingers_real_t t79 = t58 * t61;
-    const two_fingers_real_t t80 = t78 + TWO_FINGERS_C(0.05) * t79;
+    const two_fingers_real_t t80 = t78 + TWO_FINGERS_C(0.05) * t79; /* link left_2: motion */
     const two_fingers_real_t t81 = t59 * t77 + t62 * t80;
-    const two_fingers_real_t t82 = dq[1] * t58;
-    const two_fingers_real_t t83 = TWO_FINGERS_C(0.1) * t82;
+    const two_fingers_real_t t82 = dq[1] * t58; /* link left_1: motion */
+    const two_fingers_real_t t83 = TWO_FINGERS_C(0.1) * t82; /* link left_2: motion */
+    /* link left_2: force and moment */
     const two_fingers_real_t t84 = t69 - parameters[XZ3] * t70 + parameters[YZ3] * (t71 - t72)
         + (parameters[MY3] * t83 - parameters[MZ3] * t81);
     const two_fingers_real_t t85 = TWO_FINGERS_C(2.0) * t65;
     const two_fingers_real_t t86 = parameters[YY3] * t67 - t67 * (parameters[XX3] - parameters[ZZ3])
         + parameters[XY3] * t85;
-    const two_fingers_real_t t87 = t66 * t66;
+    const two_fingers_real_t t87 = t66 * t66; /* link left_2: motion */
     const two_fingers_real_t t88 = t62 * t77 - t59 * t80;
+    /* link left_2: force and moment */
     const two_fingers_real_t t89 = t86 - parameters[YZ3] * t70 - parameters[XZ3] * (t72 - t87)
         + (parameters[MZ3] * t88 + parameters[MX3] * t83);
-    const two_fingers_real_t t90 = dq[1] * t61;
+    const two_fingers_real_t t90 = dq[1] * t61; /* link left_1: motion */
     const two_fingers_real_t t91 = TWO_FINGERS_C(-2.0) * t82;
+    /* link left_1: force and moment */
     const two_fingers_real_t t92 = t90 * parameters[XX2] + t90 * (parameters[ZZ2] - parameters[YY2])
         + t91 * parameters[XY2];
     const two_fingers_real_t t93 = t92 + t79 * parameters[XZ2] + (t75 - t76) * parameters[YZ2]
         - t78 * parameters[MZ2];
+    /* link left_2: force and moment */
     const two_fingers_real_t t94 = parameters[MX3] * t68 + parameters[MY3] * t85 + parameters[MZ3] * (t87
         + t71);
     const two_fingers_real_t t95 = t94 - parameters[M3] * t83;
-    const two_fingers_real_t t96 = TWO_FINGERS_C(2.0) * t90;
+    const two_fingers_real_t t96 = TWO_FINGERS_C(2.0) * t90; /* link left_1: motion */
+    /* link left_1: force and moment */
     const two_fingers_real_t t97 = t82 * (parameters[XX2] - parameters[ZZ2]) - t82 * parameters[YY2]
         + t96 * parameters[XY2];
-    const two_fingers_real_t t98 = t58 * t58;
+    const two_fingers_real_t t98 = t58 * t58; /* link left_1: motion */
+    /* link left_1: force and moment */
     const two_fingers_real_t t99 = t97 - t79 * parameters[YZ2] + (t76 - t98) * parameters[XZ2]
         - t74 * parameters[MZ2];
+    /* link left_2: what it passes on */
     const two_fingers_real_t t100 = t99 + (t59 * t84 - t62 * t89 + TWO_FINGERS_C(0.05) * t95);
+    /* link left_1: what it passes on */
     const two_fingers_real_t t101 = t57 * (t93 + (t62 * t84 + t59 * t89)) + t60 * t100;
+    /* link left_1: force and moment */
     const two_fingers_real_t t102 = t91 * parameters[MX2] - t96 * parameters[MY2] + (t98
         + t75) * parameters[MZ2];
     const two_fingers_real_t t103 = TWO_FINGERS_C(0.4166666666666667) * (t56 + t46 + (t101
         + TWO_FINGERS_C(0.03) * (t102 + t95)));
-    const two_fingers_real_t t104 = two_fingers_sign(dq[0]);
+    const two_fingers_real_t t104 = two_fingers_sign(dq[0]); /* joint wrist: coulomb_friction */
     const two_fingers_real_t t105 = TWO_FINGERS_C(25.0) * (TWO_FINGERS_C(60.0) * dq[0] * parameters[FV1]
         + t104 * parameters[FC1]) + t103;
     out[0] = t105;
+    /* link left_2: force and moment */
     const two_fingers_real_t t106 = parameters[M3] * t88 + (parameters[MX3] * (t72 + t71)
         + parameters[MY3] * t70);
     const two_fingers_real_t t107 = parameters[M3] * t81 - (parameters[MX3] * t70 + parameters[MY3] * (t72
         + t87));
     const two_fingers_real_t t108 = (parameters[XX3] - parameters[YY3]) * t70 + parameters[XY3] * (t87 - t71)
         + (parameters[MX3] * t81 + parameters[MY3] * t88);
+    /* link left_1: force and moment */
     const two_fingers_real_t t109 = t79 * (parameters[YY2] - parameters[XX2]) + (t98 - t75) * parameters[XY2]
         + (t78 * parameters[MX2] + t74 * parameters[MY2]);
+    /* link left_2: what it passes on */
     const two_fingers_real_t t110 = t109 + (t108 + TWO_FINGERS_C(0.05) * (t62 * t107 - t59 * t106));
-    const two_fingers_real_t t111 = two_fingers_sign(dq[1]);
+    const two_fingers_real_t t111 = two_fingers_sign(dq[1]); /* joint left_1: coulomb_friction */
     const two_fingers_real_t t112 = TWO_FINGERS_C(50.0) * (TWO_FINGERS_C(30.0) * dq[1] * parameters[FV2]
         + t111 * parameters[FC2]) + TWO_FINGERS_C(1.6666666666666667) * t110;
     out[1] = t112;
-    const two_fingers_real_t t113 = two_fingers_sign(dq[2]);
+    const two_fingers_real_t t113 = two_fingers_sign(dq[2]); /* joint left_2: coulomb_friction */
     const two_fingers_real_t t114 = TWO_FINGERS_C(50.0) * (TWO_FINGERS_C(30.0) * dq[2] * parameters[FV3]
         + t113 * parameters[FC3]) + TWO_FINGERS_C(1.6666666666666667) * t108;
     out[2] = t114;
+    /* link right_2: force and moment */
     const two_fingers_real_t t115 = (parameters[XX5] - parameters[YY5]) * t22 + parameters[XY5] * (t25 - t18)
         + (parameters[MX5] * t24 + parameters[MY5] * t16);
+    /* link right_1: force and moment */
     const two_fingers_real_t t116 = t13 * (parameters[YY4] - parameters[XX4]) + (t29 - t2) * parameters[XY4]
         + (parameters[MX4] * t11 + parameters[MY4] * t8);
-    const two_fingers_real_t t117 = two_fingers_sign(dq[3]);
+    const two_fingers_real_t t117 = two_fingers_sign(dq[3]); /* joint right_1: coulomb_friction */
     const two_fingers_real_t t118 = TWO_FINGERS_C(50.0) * (TWO_FINGERS_C(30.0) * dq[3] * parameters[FV4]
         + t117 * parameters[FC4]) + TWO_FINGERS_C(1.6666666666666667) * (t116 + (t115
         + TWO_FINGERS_C(0.045) * t28));
     out[3] = t118;
-    const two_fingers_real_t t119 = two_fingers_sign(dq[4]);
+    const two_fingers_real_t t119 = two_fingers_sign(dq[4]); /* joint right_2: coulomb_friction */
     const two_fingers_real_t t120 = TWO_FINGERS_C(50.0) * (TWO_FINGERS_C(30.0) * dq[4] * parameters[FV5]
         + t119 * parameters[FC5]) + TWO_FINGERS_C(1.6666666666666667) * t115;
     out[4] = t120;

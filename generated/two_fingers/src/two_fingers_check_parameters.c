@@ -8,16 +8,16 @@
  */
 #include "two_fingers_private.h"
 
-#if TWO_FINGERS_GENERATION != 0x01C0F172UL
+#if TWO_FINGERS_GENERATION != 0x24AB78D7UL
 #error "two_fingers.h and two_fingers_check_parameters.c are of different generations: generate the arm again"
 #endif
 
-int two_fingers_check_parameters(const two_fingers_real_t parameters[TWO_FINGERS_N_PARAMETERS])
+two_fingers_status_t two_fingers_check_parameters(const two_fingers_real_t parameters[TWO_FINGERS_N_PARAMETERS])
 {
     return two_fingers_within(parameters, 41, TWO_FINGERS_C(1.0e18)) ? TWO_FINGERS_STATUS_OK : TWO_FINGERS_STATUS_INPUT;
 }
 
-int two_fingers_check_parameters_standard(const two_fingers_real_t parameters[TWO_FINGERS_N_STANDARD_PARAMETERS])
+two_fingers_status_t two_fingers_check_parameters_standard(const two_fingers_real_t parameters[TWO_FINGERS_N_STANDARD_PARAMETERS])
 {
     return two_fingers_within(parameters, 65, TWO_FINGERS_C(1.0e18)) ? TWO_FINGERS_STATUS_OK : TWO_FINGERS_STATUS_INPUT;
 }

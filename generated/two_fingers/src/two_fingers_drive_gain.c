@@ -8,8 +8,8 @@
  *
  * Operations: 0 (0 mul, 0 add, 0 neg).
  *
- * @param[in]   q    [5]  [rad]            joint coordinates; norm at most 10000
- * @param[out]  out  [5]  [(N m) per (A)]  drive gains K
+ * @param[in]   q    [5]  [rad]        joint coordinates; norm at most 10000
+ * @param[out]  out  [5]  [N m per A]  drive gains K
  *
  * Coordinates:
  *
@@ -21,15 +21,15 @@
  */
 #include "two_fingers_private.h"
 
-#if TWO_FINGERS_GENERATION != 0x01C0F172UL
+#if TWO_FINGERS_GENERATION != 0x24AB78D7UL
 #error "two_fingers.h and two_fingers_drive_gain.c are of different generations: generate the arm again"
 #endif
 
-int two_fingers_drive_gain(
+two_fingers_status_t two_fingers_drive_gain(
     const two_fingers_real_t q[TWO_FINGERS_N_JOINTS],
     two_fingers_real_t out[TWO_FINGERS_N_JOINTS])
 {
-    int status = TWO_FINGERS_STATUS_OK;
+    two_fingers_status_t status = TWO_FINGERS_STATUS_OK;
 
     if (!two_fingers_within_joints(q, TWO_FINGERS_C(1.0e8))) {
         status |= TWO_FINGERS_STATUS_INPUT;

@@ -69,11 +69,11 @@
  */
 #include "two_fingers_private.h"
 
-#if TWO_FINGERS_GENERATION != 0x01C0F172UL
+#if TWO_FINGERS_GENERATION != 0x24AB78D7UL
 #error "two_fingers.h and two_fingers_energy.c are of different generations: generate the arm again"
 #endif
 
-int two_fingers_energy(
+two_fingers_status_t two_fingers_energy(
     const two_fingers_real_t q[TWO_FINGERS_N_JOINTS],
     const two_fingers_real_t dq[TWO_FINGERS_N_JOINTS],
     const two_fingers_real_t parameters[TWO_FINGERS_N_PARAMETERS],
@@ -83,7 +83,7 @@ int two_fingers_energy(
     enum { ZZ1R = 0, XX2R, XY2, XZ2R, YZ2, ZZ2R, MX2R, MY2, XX3R, XY3, XZ3, YZ3, ZZ3, MX3, MY3, XX4R, XY4,
         XZ4R, YZ4, ZZ4R, MX4R, MY4, XX5R, XY5, XZ5, YZ5, ZZ5, MX5, MY5, FV1, FC1, FV2, FC2, FV3, FC3, IA3,
         FV4, FC4, FV5, FC5, IA5 };
-    int status = TWO_FINGERS_STATUS_OK;
+    two_fingers_status_t status = TWO_FINGERS_STATUS_OK;
 
     if (!two_fingers_within_joints(q, TWO_FINGERS_C(1.0e8))
         || !two_fingers_within_joints(dq, TWO_FINGERS_C(1.0e10))
@@ -104,30 +104,31 @@ int two_fingers_energy(
     TWO_FINGERS_SINCOS(q[3], &t9, &t11);
     two_fingers_real_t t34, t33;
     TWO_FINGERS_SINCOS(q[4], &t34, &t33);
-    const two_fingers_real_t t1 = t0 * dq[0];
+    const two_fingers_real_t t1 = t0 * dq[0]; /* link left_1: motion */
     const two_fingers_real_t t3 = t2 * dq[0];
     const two_fingers_real_t t4 = t1 * (parameters[XX2R] * t1 + parameters[XY2] * t3
         + parameters[XZ2R] * dq[1]);
     const two_fingers_real_t t5 = dq[1] * (parameters[XZ2R] * t1 + parameters[YZ2] * t3
         + parameters[ZZ2R] * dq[1]);
     const two_fingers_real_t t6 = t4 + t3 * (parameters[XY2] * t1 + parameters[YZ2] * dq[1]) + t5;
-    const two_fingers_real_t t7 = TWO_FINGERS_C(-0.03) * dq[0];
+    const two_fingers_real_t t7 = TWO_FINGERS_C(-0.03) * dq[0]; /* link left_1: velocity of its origin */
     const two_fingers_real_t t8 = TWO_FINGERS_C(0.5) * (dq[0] * (parameters[ZZ1R] * dq[0]))
         + TWO_FINGERS_C(0.5) * t6 + (parameters[MY2] * (t1 * t7) - parameters[MX2R] * (t3 * t7));
-    const two_fingers_real_t t10 = t9 * dq[0];
+    const two_fingers_real_t t10 = t9 * dq[0]; /* link right_1: motion */
     const two_fingers_real_t t12 = t11 * dq[0];
     const two_fingers_real_t t13 = t10 * (parameters[XX4R] * t10 + parameters[XY4] * t12
         + parameters[XZ4R] * dq[3]);
     const two_fingers_real_t t14 = dq[3] * (parameters[XZ4R] * t10 + parameters[YZ4] * t12
         + parameters[ZZ4R] * dq[3]);
     const two_fingers_real_t t15 = t13 + t12 * (parameters[XY4] * t10 + parameters[YZ4] * dq[3]) + t14;
+    /* link right_1: velocity of its origin */
     const two_fingers_real_t t16 = TWO_FINGERS_C(-0.034999999999999996) * dq[0];
     const two_fingers_real_t t17 = TWO_FINGERS_C(8.673617379884035e-19) * dq[0];
     const two_fingers_real_t t18 = t9 * t17;
     const two_fingers_real_t t19 = t11 * t17;
     const two_fingers_real_t t20 = parameters[MX4R] * (dq[3] * t18 - t12 * t16) + parameters[MY4] * (t10 * t16
         + dq[3] * t19);
-    const two_fingers_real_t t23 = t21 * t1 + t22 * t3;
+    const two_fingers_real_t t23 = t21 * t1 + t22 * t3; /* link left_2: motion */
     const two_fingers_real_t t24 = t21 * t3 - t22 * t1;
     const two_fingers_real_t t25 = dq[1] + dq[2];
     const two_fingers_real_t t26 = t23 * (parameters[XX3R] * t23 + parameters[XY3] * t24
@@ -135,12 +136,12 @@ int two_fingers_energy(
     const two_fingers_real_t t27 = t25 * (parameters[XZ3] * t23 + parameters[YZ3] * t24
         + parameters[ZZ3] * t25);
     const two_fingers_real_t t28 = t26 + t24 * (parameters[XY3] * t23 + parameters[YZ3] * t25) + t27;
-    const two_fingers_real_t t29 = t7 + TWO_FINGERS_C(-0.05) * t3;
+    const two_fingers_real_t t29 = t7 + TWO_FINGERS_C(-0.05) * t3; /* link left_2: velocity of its origin */
     const two_fingers_real_t t30 = TWO_FINGERS_C(0.05) * dq[1];
     const two_fingers_real_t t31 = parameters[MX3] * (t25 * (t21 * t30) - t24 * t29)
         + parameters[MY3] * (t23 * t29 - t25 * (t22 * t30));
     const two_fingers_real_t t32 = t8 + TWO_FINGERS_C(0.5) * t15 + t20 + TWO_FINGERS_C(0.5) * t28 + t31;
-    const two_fingers_real_t t35 = t33 * t10 + t34 * t12;
+    const two_fingers_real_t t35 = t33 * t10 + t34 * t12; /* link right_2: motion */
     const two_fingers_real_t t36 = t33 * t12 - t34 * t10;
     const two_fingers_real_t t37 = dq[3] + dq[4];
     const two_fingers_real_t t38 = t35 * (parameters[XX5R] * t35 + parameters[XY5] * t36
@@ -148,6 +149,7 @@ int two_fingers_energy(
     const two_fingers_real_t t39 = t37 * (parameters[XZ5] * t35 + parameters[YZ5] * t36
         + parameters[ZZ5] * t37);
     const two_fingers_real_t t40 = t38 + t36 * (parameters[XY5] * t35 + parameters[YZ5] * t37) + t39;
+    /* link right_2: velocity of its origin */
     const two_fingers_real_t t41 = t16 + TWO_FINGERS_C(-0.045) * t12;
     const two_fingers_real_t t42 = t18 + TWO_FINGERS_C(0.045) * dq[3];
     const two_fingers_real_t t43 = t37 * (t34 * t19 + t33 * t42) - t36 * t41;
@@ -158,9 +160,9 @@ int two_fingers_energy(
         + TWO_FINGERS_C(0.5) * (TWO_FINGERS_C(9.0e2) * parameters[IA3] * (dq[2] * dq[2]))
         + TWO_FINGERS_C(0.5) * (TWO_FINGERS_C(9.0e2) * parameters[IA5] * (dq[4] * dq[4]));
     kinetic[0] = t46;
-    const two_fingers_real_t t47 = TWO_FINGERS_C(9.81) * t0;
+    const two_fingers_real_t t47 = TWO_FINGERS_C(9.81) * t0; /* link left_1: motion */
     const two_fingers_real_t t48 = TWO_FINGERS_C(9.81) * t2;
-    const two_fingers_real_t t49 = TWO_FINGERS_C(9.81) * t9;
+    const two_fingers_real_t t49 = TWO_FINGERS_C(9.81) * t9; /* link right_1: motion */
     const two_fingers_real_t t50 = TWO_FINGERS_C(9.81) * t11;
     const two_fingers_real_t t51 = parameters[MX2R] * t47 + parameters[MY2] * t48 + (parameters[MX4R] * t49
         + parameters[MY4] * t50);

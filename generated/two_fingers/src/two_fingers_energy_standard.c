@@ -92,11 +92,11 @@
  */
 #include "two_fingers_private.h"
 
-#if TWO_FINGERS_GENERATION != 0x01C0F172UL
+#if TWO_FINGERS_GENERATION != 0x24AB78D7UL
 #error "two_fingers.h and two_fingers_energy_standard.c are of different generations: generate the arm again"
 #endif
 
-int two_fingers_energy_standard(
+two_fingers_status_t two_fingers_energy_standard(
     const two_fingers_real_t q[TWO_FINGERS_N_JOINTS],
     const two_fingers_real_t dq[TWO_FINGERS_N_JOINTS],
     const two_fingers_real_t parameters[TWO_FINGERS_N_STANDARD_PARAMETERS],
@@ -107,7 +107,7 @@ int two_fingers_energy_standard(
         M2, XX3, XY3, XZ3, YY3, YZ3, ZZ3, MX3, MY3, MZ3, M3, XX4, XY4, XZ4, YY4, YZ4, ZZ4, MX4, MY4, MZ4, M4,
         XX5, XY5, XZ5, YY5, YZ5, ZZ5, MX5, MY5, MZ5, M5, FV1, FC1, IA1, FV2, FC2, IA2, FV3, FC3, IA3, FV4,
         FC4, IA4, FV5, FC5, IA5 };
-    int status = TWO_FINGERS_STATUS_OK;
+    two_fingers_status_t status = TWO_FINGERS_STATUS_OK;
 
     if (!two_fingers_within_joints(q, TWO_FINGERS_C(1.0e8))
         || !two_fingers_within_joints(dq, TWO_FINGERS_C(1.0e10))
@@ -128,7 +128,7 @@ int two_fingers_energy_standard(
     TWO_FINGERS_SINCOS(q[3], &t10, &t12);
     two_fingers_real_t t40, t39;
     TWO_FINGERS_SINCOS(q[4], &t40, &t39);
-    const two_fingers_real_t t1 = t0 * dq[0];
+    const two_fingers_real_t t1 = t0 * dq[0]; /* link left_1: motion */
     const two_fingers_real_t t3 = t2 * dq[0];
     const two_fingers_real_t t4 = t1 * (t1 * parameters[XX2] + t3 * parameters[XY2]
         + dq[1] * parameters[XZ2]);
@@ -136,11 +136,11 @@ int two_fingers_energy_standard(
         + dq[1] * parameters[YZ2]);
     const two_fingers_real_t t6 = dq[1] * (t1 * parameters[XZ2] + t3 * parameters[YZ2]
         + dq[1] * parameters[ZZ2]);
-    const two_fingers_real_t t7 = TWO_FINGERS_C(0.03) * dq[0];
+    const two_fingers_real_t t7 = TWO_FINGERS_C(0.03) * dq[0]; /* link left_1: velocity of its origin */
     const two_fingers_real_t t8 = TWO_FINGERS_C(0.5) * (t4 + t5 + t6 + parameters[M2] * (t7 * t7));
     const two_fingers_real_t t9 = TWO_FINGERS_C(0.5) * (dq[0] * (dq[0] * parameters[ZZ1])) + t8
         + (parameters[MX2] * (t3 * t7) - parameters[MY2] * (t1 * t7));
-    const two_fingers_real_t t11 = t10 * dq[0];
+    const two_fingers_real_t t11 = t10 * dq[0]; /* link right_1: motion */
     const two_fingers_real_t t13 = t12 * dq[0];
     const two_fingers_real_t t14 = t11 * (t11 * parameters[XX4] + t13 * parameters[XY4]
         + dq[3] * parameters[XZ4]);
@@ -148,6 +148,7 @@ int two_fingers_energy_standard(
         + dq[3] * parameters[YZ4]);
     const two_fingers_real_t t16 = dq[3] * (t11 * parameters[XZ4] + t13 * parameters[YZ4]
         + dq[3] * parameters[ZZ4]);
+    /* link right_1: velocity of its origin */
     const two_fingers_real_t t17 = TWO_FINGERS_C(8.673617379884035e-19) * dq[0];
     const two_fingers_real_t t18 = t12 * t17;
     const two_fingers_real_t t19 = t10 * t17;
@@ -157,7 +158,7 @@ int two_fingers_energy_standard(
         + parameters[MY4] * (dq[3] * t18 - t11 * t20);
     const two_fingers_real_t t23 = t9 + TWO_FINGERS_C(0.5) * (t14 + t15 + t16 + t21) + (t22
         - parameters[MZ4] * (t13 * t18 + t11 * t19));
-    const two_fingers_real_t t26 = t24 * t1 + t25 * t3;
+    const two_fingers_real_t t26 = t24 * t1 + t25 * t3; /* link left_2: motion */
     const two_fingers_real_t t27 = t24 * t3 - t25 * t1;
     const two_fingers_real_t t28 = dq[1] + dq[2];
     const two_fingers_real_t t29 = t26 * (parameters[XX3] * t26 + parameters[XY3] * t27
@@ -166,7 +167,7 @@ int two_fingers_energy_standard(
         + t28 * parameters[YZ3]);
     const two_fingers_real_t t31 = t28 * (parameters[XZ3] * t26 + parameters[YZ3] * t27
         + t28 * parameters[ZZ3]);
-    const two_fingers_real_t t32 = TWO_FINGERS_C(0.05) * dq[1];
+    const two_fingers_real_t t32 = TWO_FINGERS_C(0.05) * dq[1]; /* link left_2: velocity of its origin */
     const two_fingers_real_t t33 = t25 * t32;
     const two_fingers_real_t t34 = t24 * t32;
     const two_fingers_real_t t35 = t7 + TWO_FINGERS_C(0.05) * t3;
@@ -175,7 +176,7 @@ int two_fingers_energy_standard(
         + t28 * t33);
     const two_fingers_real_t t38 = t23 + TWO_FINGERS_C(0.5) * (t29 + t30 + t31 + t36) + (t37
         + parameters[MZ3] * (t27 * t33 - t26 * t34));
-    const two_fingers_real_t t41 = t39 * t11 + t40 * t13;
+    const two_fingers_real_t t41 = t39 * t11 + t40 * t13; /* link right_2: motion */
     const two_fingers_real_t t42 = t39 * t13 - t40 * t11;
     const two_fingers_real_t t43 = dq[3] + dq[4];
     const two_fingers_real_t t44 = t41 * (parameters[XX5] * t41 + parameters[XY5] * t42
@@ -184,6 +185,7 @@ int two_fingers_energy_standard(
         + t43 * parameters[YZ5]);
     const two_fingers_real_t t46 = t43 * (parameters[XZ5] * t41 + parameters[YZ5] * t42
         + t43 * parameters[ZZ5]);
+    /* link right_2: velocity of its origin */
     const two_fingers_real_t t47 = t19 + TWO_FINGERS_C(0.045) * dq[3];
     const two_fingers_real_t t48 = t39 * t18 - t40 * t47;
     const two_fingers_real_t t49 = t40 * t18 + t39 * t47;
@@ -200,12 +202,12 @@ int two_fingers_energy_standard(
         + TWO_FINGERS_C(0.5) * (dq[2] * dq[2] * (TWO_FINGERS_C(9.0e2) * parameters[IA3]))
         + TWO_FINGERS_C(0.5) * (dq[3] * dq[3] * (TWO_FINGERS_C(9.0e2) * parameters[IA4]));
     kinetic[0] = t55 + TWO_FINGERS_C(0.5) * (dq[4] * dq[4] * (TWO_FINGERS_C(9.0e2) * parameters[IA5]));
-    const two_fingers_real_t t56 = TWO_FINGERS_C(9.81) * t0;
+    const two_fingers_real_t t56 = TWO_FINGERS_C(9.81) * t0; /* link left_1: motion */
     const two_fingers_real_t t57 = TWO_FINGERS_C(9.81) * t2;
     const two_fingers_real_t t58 = TWO_FINGERS_C(9.81) * parameters[MZ1]
         + TWO_FINGERS_C(1.9620000000000002) * parameters[M1] + (t56 * parameters[MX2] + t57 * parameters[MY2]
         + TWO_FINGERS_C(2.7468000000000004) * parameters[M2]);
-    const two_fingers_real_t t59 = TWO_FINGERS_C(9.81) * t10;
+    const two_fingers_real_t t59 = TWO_FINGERS_C(9.81) * t10; /* link right_1: motion */
     const two_fingers_real_t t60 = TWO_FINGERS_C(9.81) * t12;
     const two_fingers_real_t t61 = t58 + (t59 * parameters[MX4] + t60 * parameters[MY4]
         + TWO_FINGERS_C(2.6487000000000003) * parameters[M4]);

@@ -6,7 +6,7 @@
  * Arm two_fingers, description a6b389943be5f64e.
  * SPDX-License-Identifier: 0BSD
  *
- * Operations: 524 (300 mul, 224 add, 0 neg), 5 div, 8 trig, 5 other.
+ * Operations: 524 (300 mul, 224 add, 0 neg), 5 div, 8 trig, 5 other calls (sign, select and the like).
  *
  * @param[in]   q           [5]   [rad]      joint coordinates; norm at most 10000
  * @param[in]   dq          [5]   [rad/s]    joint velocities; norm at most 100000
@@ -70,11 +70,11 @@
  */
 #include "two_fingers_private.h"
 
-#if TWO_FINGERS_GENERATION != 0x01C0F172UL
+#if TWO_FINGERS_GENERATION != 0x24AB78D7UL
 #error "two_fingers.h and two_fingers_forward_dynamics.c are of different generations: generate the arm again"
 #endif
 
-int two_fingers_forward_dynamics(
+two_fingers_status_t two_fingers_forward_dynamics(
     const two_fingers_real_t q[TWO_FINGERS_N_JOINTS],
     const two_fingers_real_t dq[TWO_FINGERS_N_JOINTS],
     const two_fingers_real_t input[TWO_FINGERS_N_JOINTS],
@@ -84,7 +84,7 @@ int two_fingers_forward_dynamics(
     enum { ZZ1R = 0, XX2R, XY2, XZ2R, YZ2, ZZ2R, MX2R, MY2, XX3R, XY3, XZ3, YZ3, ZZ3, MX3, MY3, XX4R, XY4,
         XZ4R, YZ4, ZZ4R, MX4R, MY4, XX5R, XY5, XZ5, YZ5, ZZ5, MX5, MY5, FV1, FC1, FV2, FC2, FV3, FC3, IA3,
         FV4, FC4, FV5, FC5, IA5 };
-    int status = TWO_FINGERS_STATUS_OK;
+    two_fingers_status_t status = TWO_FINGERS_STATUS_OK;
 
     if (!two_fingers_within_joints(q, TWO_FINGERS_C(1.0e8))
         || !two_fingers_within_joints(dq, TWO_FINGERS_C(1.0e10))
@@ -117,11 +117,12 @@ int two_fingers_forward_dynamics(
         two_fingers_zero(out, 5);
         return TWO_FINGERS_STATUS_PIVOT;
     }
+    /* link right_2: column of the mass matrix */
     const two_fingers_real_t t4 = t2 * parameters[MY5] - t3 * parameters[MX5];
     const two_fingers_real_t t5 = TWO_FINGERS_C(0.045) * t4 - parameters[ZZ5];
     const two_fingers_real_t t6 = TWO_FINGERS_C(1.0) / t1;
     const two_fingers_real_t t7 = t5 * t6;
-    const two_fingers_real_t t8 = TWO_FINGERS_C(-0.09) * t4;
+    const two_fingers_real_t t8 = TWO_FINGERS_C(-0.09) * t4; /* link right_2: inertia of it and all beyond */
     const two_fingers_real_t t9 = parameters[ZZ4R] + (parameters[ZZ5] + t8);
     const two_fingers_real_t t10 = two_fingers_bounded(t9 - t5 * t7);
     if (!(t10 > TWO_FINGERS_C(1.0e-12))) {
@@ -133,11 +134,12 @@ int two_fingers_forward_dynamics(
         two_fingers_zero(out, 5);
         return TWO_FINGERS_STATUS_PIVOT;
     }
+    /* link left_2: column of the mass matrix */
     const two_fingers_real_t t14 = t13 * parameters[MX3] - t12 * parameters[MY3];
     const two_fingers_real_t t15 = TWO_FINGERS_C(-0.05) * t14 - parameters[ZZ3];
     const two_fingers_real_t t16 = TWO_FINGERS_C(1.0) / t0;
     const two_fingers_real_t t17 = t15 * t16;
-    const two_fingers_real_t t18 = TWO_FINGERS_C(0.1) * t14;
+    const two_fingers_real_t t18 = TWO_FINGERS_C(0.1) * t14; /* link left_2: inertia of it and all beyond */
     const two_fingers_real_t t19 = parameters[ZZ2R] + (parameters[ZZ3] + t18);
     const two_fingers_real_t t20 = two_fingers_bounded(t19 - t15 * t17);
     if (!(t20 > TWO_FINGERS_C(1.0e-12))) {
@@ -149,36 +151,46 @@ int two_fingers_forward_dynamics(
         two_fingers_zero(out, 5);
         return TWO_FINGERS_STATUS_PIVOT;
     }
+    /* link right_2: inertia of it and all beyond */
     const two_fingers_real_t t22 = t3 * parameters[XX5R] - parameters[XY5] * (TWO_FINGERS_C(2.0) * t2);
     const two_fingers_real_t t23 = t3 * t22;
     const two_fingers_real_t t24 = parameters[XX4R] + t23;
+    /* link right_2: column of the mass matrix */
     const two_fingers_real_t t26 = t3 * parameters[MY5] + t2 * parameters[MX5];
+    /* link right_1: inertia of it and all beyond */
     const two_fingers_real_t t28 = (parameters[XY4] + (parameters[XY5] + t2 * t22
         + TWO_FINGERS_C(-0.045) * t26)) * (TWO_FINGERS_C(2.0) * t27);
     const two_fingers_real_t t29 = t25 * (t25 * (parameters[XX5R] - t23 + t8 - t24) + t28);
-    const two_fingers_real_t t30 = parameters[MY4] + t26;
+    const two_fingers_real_t t30 = parameters[MY4] + t26; /* link right_2: inertia of it and all beyond */
     const two_fingers_real_t t31 = parameters[MX4R] - t4;
+    /* link right_1: inertia of it and all beyond */
     const two_fingers_real_t t32 = t24 + t29 + TWO_FINGERS_C(0.06999999999999999) * (t25 * t31 - t27 * t30);
+    /* link left_2: inertia of it and all beyond */
     const two_fingers_real_t t33 = t13 * parameters[XX3R] - parameters[XY3] * (TWO_FINGERS_C(2.0) * t12);
     const two_fingers_real_t t34 = t13 * t33;
     const two_fingers_real_t t35 = parameters[XX2R] + t34;
+    /* link left_2: column of the mass matrix */
     const two_fingers_real_t t37 = t13 * parameters[MY3] + t12 * parameters[MX3];
+    /* link left_1: inertia of it and all beyond */
     const two_fingers_real_t t39 = (parameters[XY2] + (parameters[XY3] + t12 * t33
         + TWO_FINGERS_C(-0.05) * t37)) * (TWO_FINGERS_C(2.0) * t38);
     const two_fingers_real_t t40 = t36 * (t36 * (parameters[XX3R] - t34 + t18 - t35) + t39);
     const two_fingers_real_t t41 = TWO_FINGERS_C(0.06) * (t36 * (parameters[MX2R] + t14)
         - t38 * (parameters[MY2] + t37));
     const two_fingers_real_t t42 = parameters[ZZ1R] + t32 + (t35 + t40 + t41);
+    /* link right_2: column of the mass matrix */
     const two_fingers_real_t t43 = t2 * parameters[YZ5] - t3 * parameters[XZ5];
     const two_fingers_real_t t44 = t2 * parameters[XZ5] + t3 * parameters[YZ5];
     const two_fingers_real_t t45 = t27 * t43 - t25 * t44 + TWO_FINGERS_C(8.673617379884035e-19) * (t27 * t4
         - t25 * t26);
     const two_fingers_real_t t46 = t45 * t6;
+    /* link right_1: column of the mass matrix */
     const two_fingers_real_t t47 = t27 * (t43 - parameters[XZ4R]) - t25 * (parameters[YZ4] + t44)
         + TWO_FINGERS_C(-8.673617379884035e-19) * (t25 * t30 + t27 * t31);
     const two_fingers_real_t t48 = t47 + t45 * t7;
     const two_fingers_real_t t49 = TWO_FINGERS_C(1.0) / t10;
     const two_fingers_real_t t50 = t48 * t49;
+    /* link left_2: column of the mass matrix */
     const two_fingers_real_t t51 = t12 * parameters[YZ3] - t13 * parameters[XZ3];
     const two_fingers_real_t t52 = t12 * parameters[XZ3] + t13 * parameters[YZ3];
     const two_fingers_real_t t53 = t38 * t51 - t36 * t52;
@@ -197,135 +209,161 @@ int two_fingers_forward_dynamics(
         two_fingers_zero(out, 5);
         return TWO_FINGERS_STATUS_PIVOT;
     }
-    const two_fingers_real_t t61 = t27 * dq[0];
+    const two_fingers_real_t t61 = t27 * dq[0]; /* link right_1: motion */
     const two_fingers_real_t t62 = t25 * dq[0];
-    const two_fingers_real_t t63 = t2 * t61 - t3 * t62;
+    const two_fingers_real_t t63 = t2 * t61 - t3 * t62; /* link right_2: motion */
     const two_fingers_real_t t64 = t63 * t63;
     const two_fingers_real_t t65 = dq[3] + dq[4];
     const two_fingers_real_t t66 = t65 * t65;
     const two_fingers_real_t t67 = t3 * t61 + t2 * t62;
     const two_fingers_real_t t68 = t67 * t63;
+    /* link right_2: force and moment */
     const two_fingers_real_t t69 = parameters[MX5] * (t64 + t66) + parameters[MY5] * t68;
-    const two_fingers_real_t t70 = t67 * t67;
+    const two_fingers_real_t t70 = t67 * t67; /* link right_2: motion */
+    /* link right_2: force and moment */
     const two_fingers_real_t t71 = parameters[MX5] * t68 + parameters[MY5] * (t70 + t66);
-    const two_fingers_real_t t72 = t62 * t62;
+    const two_fingers_real_t t72 = t62 * t62; /* link right_2: motion */
     const two_fingers_real_t t73 = dq[3] * dq[3];
     const two_fingers_real_t t74 = t73 + t72;
     const two_fingers_real_t t75 = t61 * t62;
+    /* link right_2: what it passes on */
     const two_fingers_real_t t76 = parameters[MX4R] * t74 - parameters[MY4] * t75 + (t3 * t69 - t2 * t71);
     const two_fingers_real_t t77 = t2 * t69 + t3 * t71;
-    const two_fingers_real_t t78 = t61 * t61;
+    const two_fingers_real_t t78 = t61 * t61; /* link right_2: motion */
+    /* link right_1: what it passes on */
     const two_fingers_real_t t79 = t27 * (parameters[MX4R] * t75 - parameters[MY4] * (t73 + t78) - t77);
     const two_fingers_real_t t80 = t25 * t76 + t79;
-    const two_fingers_real_t t81 = t67 * t65;
-    const two_fingers_real_t t82 = TWO_FINGERS_C(2.0) * t81;
-    const two_fingers_real_t t83 = t63 * t65;
-    const two_fingers_real_t t84 = TWO_FINGERS_C(-2.0) * t83;
+    const two_fingers_real_t t81 = t67 * t65; /* link right_2: motion */
+    const two_fingers_real_t t82 = TWO_FINGERS_C(2.0) * t81; /* link right_2: force and moment */
+    const two_fingers_real_t t83 = t63 * t65; /* link right_2: motion */
+    const two_fingers_real_t t84 = TWO_FINGERS_C(-2.0) * t83; /* link right_2: force and moment */
     const two_fingers_real_t t85 = parameters[MX5] * t82 + parameters[MY5] * t84;
-    const two_fingers_real_t t86 = dq[3] * t61;
+    const two_fingers_real_t t86 = dq[3] * t61; /* link right_1: motion */
     const two_fingers_real_t t87 = TWO_FINGERS_C(2.0) * t86;
     const two_fingers_real_t t88 = dq[3] * t62;
     const two_fingers_real_t t89 = TWO_FINGERS_C(2.0) * t88;
+    /* link right_2: what it passes on */
     const two_fingers_real_t t90 = parameters[MX4R] * t87 + parameters[MY4] * t89 + t85;
+    /* link right_1: what it passes on */
     const two_fingers_real_t
         t91 = TWO_FINGERS_C(0.03446827135542729) * (TWO_FINGERS_C(-0.17364817766693028) * t80
         + TWO_FINGERS_C(0.984807753012208) * t90)
         + TWO_FINGERS_C(0.00607768621834256) * (TWO_FINGERS_C(0.984807753012208) * t80
         + TWO_FINGERS_C(0.17364817766693028) * t90);
+    /* link right_2: force and moment */
     const two_fingers_real_t t92 = parameters[XX5R] * t83 + parameters[ZZ5] * t83 + parameters[XY5] * t82
         + parameters[XZ5] * t68;
     const two_fingers_real_t t93 = dq[0] * dq[0];
-    const two_fingers_real_t t94 = TWO_FINGERS_C(-8.673617379884035e-19) * t93;
-    const two_fingers_real_t t95 = t94 + TWO_FINGERS_C(-0.09) * t86;
+    const two_fingers_real_t t94 = TWO_FINGERS_C(-8.673617379884035e-19) * t93; /* link right_1: motion */
+    const two_fingers_real_t t95 = t94 + TWO_FINGERS_C(-0.09) * t86; /* link right_2: motion */
+    /* link right_2: force and moment */
     const two_fingers_real_t t96 = t92 + parameters[YZ5] * (t66 - t64) + parameters[MY5] * t95;
     const two_fingers_real_t t97 = t81 * (parameters[XX5R] - parameters[ZZ5]) + parameters[XY5] * t84
         + parameters[YZ5] * t68;
     const two_fingers_real_t t98 = t97 - parameters[XZ5] * (t70 - t66) + parameters[MX5] * t95;
+    /* link right_1: force and moment */
     const two_fingers_real_t t99 = parameters[XY4] * t87 - (parameters[XX4R] * t88 + parameters[ZZ4R] * t88)
         - parameters[XZ4R] * t75;
+    /* link right_2: what it passes on */
     const two_fingers_real_t t100 = t99 + parameters[YZ4] * (t73 - t72) + parameters[MY4] * t94 + (t3 * t96
         + t2 * t98);
+    /* link right_1: force and moment */
     const two_fingers_real_t t101 = t86 * (parameters[ZZ4R] - parameters[XX4R]) - parameters[XY4] * t89
         + parameters[YZ4] * t75;
+    /* link right_2: what it passes on */
     const two_fingers_real_t t102 = t101 + parameters[XZ4R] * (t78 - t73) - parameters[MX4R] * t94 + (t2 * t96
         - t3 * t98 + TWO_FINGERS_C(0.045) * t85);
-    const two_fingers_real_t t103 = t38 * dq[0];
+    const two_fingers_real_t t103 = t38 * dq[0]; /* link left_1: motion */
     const two_fingers_real_t t104 = t36 * dq[0];
-    const two_fingers_real_t t105 = t12 * t103 - t13 * t104;
+    const two_fingers_real_t t105 = t12 * t103 - t13 * t104; /* link left_2: motion */
     const two_fingers_real_t t106 = dq[1] + dq[2];
     const two_fingers_real_t t107 = t105 * t106;
     const two_fingers_real_t t108 = t13 * t103 + t12 * t104;
     const two_fingers_real_t t109 = t108 * t106;
-    const two_fingers_real_t t110 = TWO_FINGERS_C(2.0) * t109;
-    const two_fingers_real_t t111 = t108 * t105;
+    const two_fingers_real_t t110 = TWO_FINGERS_C(2.0) * t109; /* link left_2: force and moment */
+    const two_fingers_real_t t111 = t108 * t105; /* link left_2: motion */
+    /* link left_2: force and moment */
     const two_fingers_real_t t112 = parameters[XX3R] * t107 + parameters[ZZ3] * t107 + parameters[XY3] * t110
         + parameters[XZ3] * t111;
-    const two_fingers_real_t t113 = t105 * t105;
+    const two_fingers_real_t t113 = t105 * t105; /* link left_2: motion */
     const two_fingers_real_t t114 = t106 * t106;
-    const two_fingers_real_t t115 = dq[1] * t103;
-    const two_fingers_real_t t116 = TWO_FINGERS_C(-0.1) * t115;
+    const two_fingers_real_t t115 = dq[1] * t103; /* link left_1: motion */
+    const two_fingers_real_t t116 = TWO_FINGERS_C(-0.1) * t115; /* link left_2: motion */
+    /* link left_2: force and moment */
     const two_fingers_real_t t117 = t112 + parameters[YZ3] * (t114 - t113) + parameters[MY3] * t116;
     const two_fingers_real_t t118 = TWO_FINGERS_C(-2.0) * t107;
     const two_fingers_real_t t119 = t109 * (parameters[XX3R] - parameters[ZZ3]) + parameters[XY3] * t118
         + parameters[YZ3] * t111;
-    const two_fingers_real_t t120 = t108 * t108;
+    const two_fingers_real_t t120 = t108 * t108; /* link left_2: motion */
+    /* link left_2: force and moment */
     const two_fingers_real_t t121 = t119 - parameters[XZ3] * (t120 - t114) + parameters[MX3] * t116;
-    const two_fingers_real_t t122 = dq[1] * t104;
+    const two_fingers_real_t t122 = dq[1] * t104; /* link left_1: motion */
     const two_fingers_real_t t123 = TWO_FINGERS_C(2.0) * t115;
     const two_fingers_real_t t124 = t103 * t104;
+    /* link left_1: force and moment */
     const two_fingers_real_t t125 = parameters[XY2] * t123 - (parameters[XX2R] * t122
         + parameters[ZZ2R] * t122) - parameters[XZ2R] * t124;
-    const two_fingers_real_t t126 = t104 * t104;
+    const two_fingers_real_t t126 = t104 * t104; /* link left_1: motion */
     const two_fingers_real_t t127 = dq[1] * dq[1];
+    /* link left_2: what it passes on */
     const two_fingers_real_t t128 = t125 + parameters[YZ2] * (t127 - t126) + (t13 * t117 + t12 * t121);
+    /* link left_2: force and moment */
     const two_fingers_real_t t129 = parameters[MX3] * t110 + parameters[MY3] * t118;
-    const two_fingers_real_t t130 = TWO_FINGERS_C(2.0) * t122;
+    const two_fingers_real_t t130 = TWO_FINGERS_C(2.0) * t122; /* link left_1: motion */
+    /* link left_1: force and moment */
     const two_fingers_real_t t131 = t115 * (parameters[ZZ2R] - parameters[XX2R]) - parameters[XY2] * t130
         + parameters[YZ2] * t124;
-    const two_fingers_real_t t132 = t103 * t103;
+    const two_fingers_real_t t132 = t103 * t103; /* link left_1: motion */
+    /* link left_2: what it passes on */
     const two_fingers_real_t t133 = t131 + parameters[XZ2R] * (t132 - t127) + (t12 * t117 - t13 * t121
         + TWO_FINGERS_C(0.05) * t129);
+    /* link left_1: what it passes on */
     const two_fingers_real_t t134 = t38 * t128 + t36 * t133 + TWO_FINGERS_C(0.03) * (parameters[MX2R] * t123
         + parameters[MY2] * t130 + t129);
-    const two_fingers_real_t t135 = two_fingers_sign(dq[0]);
+    const two_fingers_real_t t135 = two_fingers_sign(dq[0]); /* joint wrist: coulomb_friction */
     const two_fingers_real_t t136 = TWO_FINGERS_C(60.0) * (parameters[FV1] * (TWO_FINGERS_C(-60.0) * dq[0])
         - parameters[FC1] * t135) + (t27 * t100 + t25 * t102 + t91 + t134);
-    const two_fingers_real_t t137 = TWO_FINGERS_C(0.034999999999999996) * t93;
+    const two_fingers_real_t t137 = TWO_FINGERS_C(0.034999999999999996) * t93; /* link right_1: motion */
     const two_fingers_real_t t138 = t25 * t137 - TWO_FINGERS_C(9.81) * t27;
-    const two_fingers_real_t t139 = t138 + TWO_FINGERS_C(0.045) * t74;
-    const two_fingers_real_t t140 = t27 * t137 + TWO_FINGERS_C(9.81) * t25;
-    const two_fingers_real_t t141 = t140 + TWO_FINGERS_C(0.045) * t75;
+    const two_fingers_real_t t139 = t138 + TWO_FINGERS_C(0.045) * t74; /* link right_2: motion */
+    const two_fingers_real_t t140 = t27 * t137 + TWO_FINGERS_C(9.81) * t25; /* link right_1: motion */
+    const two_fingers_real_t t141 = t140 + TWO_FINGERS_C(0.045) * t75; /* link right_2: motion */
+    /* link right_2: force and moment */
     const two_fingers_real_t t142 = parameters[MX5] * (t2 * t139 + t3 * t141) + parameters[MY5] * (t3 * t139
         - t2 * t141);
     const two_fingers_real_t t143 = parameters[XX5R] * t68 + parameters[XY5] * (t70 - t64) + t142;
-    const two_fingers_real_t t144 = two_fingers_sign(dq[4]);
+    const two_fingers_real_t t144 = two_fingers_sign(dq[4]); /* joint right_2: coulomb_friction */
     const two_fingers_real_t t145 = TWO_FINGERS_C(30.0) * (parameters[FV5] * (TWO_FINGERS_C(30.0) * dq[4])
         + parameters[FC5] * t144) + t143;
     const two_fingers_real_t t146 = TWO_FINGERS_C(0.6) * input[4] - t145;
+    /* link right_1: force and moment */
     const two_fingers_real_t t147 = parameters[XX4R] * t75 - parameters[XY4] * (t78 - t72)
         - (parameters[MX4R] * t140 + parameters[MY4] * t138);
-    const two_fingers_real_t t148 = two_fingers_sign(dq[3]);
+    const two_fingers_real_t t148 = two_fingers_sign(dq[3]); /* joint right_1: coulomb_friction */
     const two_fingers_real_t t149 = TWO_FINGERS_C(30.0) * (parameters[FV4] * (TWO_FINGERS_C(30.0) * dq[3])
         + parameters[FC4] * t148) - (t147 - (t143 - TWO_FINGERS_C(0.045) * t77));
     const two_fingers_real_t t150 = TWO_FINGERS_C(0.6) * input[3] - t149 + t146 * t7;
     const two_fingers_real_t t151 = TWO_FINGERS_C(2.4) * input[0] + t136 + t146 * t46 + t150 * t50;
-    const two_fingers_real_t t152 = TWO_FINGERS_C(0.03) * t93;
+    const two_fingers_real_t t152 = TWO_FINGERS_C(0.03) * t93; /* link left_1: motion */
     const two_fingers_real_t t153 = t36 * t152 - TWO_FINGERS_C(9.81) * t38;
-    const two_fingers_real_t t154 = t153 + TWO_FINGERS_C(0.05) * (t127 + t126);
-    const two_fingers_real_t t155 = t38 * t152 + TWO_FINGERS_C(9.81) * t36;
-    const two_fingers_real_t t156 = t155 + TWO_FINGERS_C(0.05) * t124;
+    const two_fingers_real_t t154 = t153 + TWO_FINGERS_C(0.05) * (t127 + t126); /* link left_2: motion */
+    const two_fingers_real_t t155 = t38 * t152 + TWO_FINGERS_C(9.81) * t36; /* link left_1: motion */
+    const two_fingers_real_t t156 = t155 + TWO_FINGERS_C(0.05) * t124; /* link left_2: motion */
+    /* link left_2: force and moment */
     const two_fingers_real_t t157 = parameters[MX3] * (t12 * t154 + t13 * t156)
         + parameters[MY3] * (t13 * t154 - t12 * t156);
     const two_fingers_real_t t158 = parameters[XX3R] * t111 + parameters[XY3] * (t120 - t113) + t157;
-    const two_fingers_real_t t159 = two_fingers_sign(dq[2]);
+    const two_fingers_real_t t159 = two_fingers_sign(dq[2]); /* joint left_2: coulomb_friction */
     const two_fingers_real_t t160 = TWO_FINGERS_C(30.0) * (parameters[FV3] * (TWO_FINGERS_C(30.0) * dq[2])
         + parameters[FC3] * t159) + t158;
     const two_fingers_real_t t161 = TWO_FINGERS_C(0.6) * input[2] - t160;
+    /* link left_2: what it passes on */
     const two_fingers_real_t t162 = t12 * (parameters[MX3] * (t113 + t114) + parameters[MY3] * t111)
         + t13 * (parameters[MX3] * t111 + parameters[MY3] * (t120 + t114));
+    /* link left_1: force and moment */
     const two_fingers_real_t t163 = parameters[XX2R] * t124 - parameters[XY2] * (t132 - t126)
         - (parameters[MX2R] * t155 + parameters[MY2] * t153);
-    const two_fingers_real_t t164 = two_fingers_sign(dq[1]);
+    const two_fingers_real_t t164 = two_fingers_sign(dq[1]); /* joint left_1: coulomb_friction */
     const two_fingers_real_t t165 = TWO_FINGERS_C(30.0) * (parameters[FV2] * (TWO_FINGERS_C(30.0) * dq[1])
         + parameters[FC2] * t164) - (t163 - (t158 - TWO_FINGERS_C(0.05) * t162));
     const two_fingers_real_t t166 = TWO_FINGERS_C(0.6) * input[1] - t165 + t161 * t17;

@@ -7,7 +7,7 @@
  * Arm two_fingers, description a6b389943be5f64e.
  * SPDX-License-Identifier: 0BSD
  *
- * Operations: 1915 (1105 mul, 810 add, 0 neg), 5 div, 8 trig, 5 other.
+ * Operations: 1915 (1105 mul, 810 add, 0 neg), 5 div, 8 trig, 5 other calls (sign, select and the like).
  *
  * @param[in]   q             [5]   [rad]                    joint coordinates; norm at most 10000
  * @param[in]   dq            [5]   [rad/s]                  joint velocities; norm at most 100000
@@ -15,9 +15,9 @@
  *                                                           norm at most 1e+09
  * @param[in]   parameters    [41]                           base parameters; norm at most 1e+09
  * @param[out]  ddq           [5]   [rad/s^2]                joint accelerations
- * @param[out]  ddq_by_q      [25]  [(rad/s^2) per (rad)]    d ddq / d q; 5 x 5, row-major
+ * @param[out]  ddq_by_q      [25]  [(rad/s^2) per rad]      d ddq / d q; 5 x 5, row-major
  * @param[out]  ddq_by_dq     [25]  [(rad/s^2) per (rad/s)]  d ddq / d dq; 5 x 5, row-major
- * @param[out]  ddq_by_input  [25]  [(rad/s^2) per (A)]      d ddq / d input; 5 x 5, row-major
+ * @param[out]  ddq_by_input  [25]  [(rad/s^2) per A]        d ddq / d input; 5 x 5, row-major
  *
  * Coordinates:
  *
@@ -74,11 +74,11 @@
  */
 #include "two_fingers_private.h"
 
-#if TWO_FINGERS_GENERATION != 0x01C0F172UL
+#if TWO_FINGERS_GENERATION != 0x24AB78D7UL
 #error "two_fingers.h and two_fingers_forward_dynamics_derivatives.c are of different generations: generate the arm again"
 #endif
 
-int two_fingers_forward_dynamics_derivatives(
+two_fingers_status_t two_fingers_forward_dynamics_derivatives(
     const two_fingers_real_t q[TWO_FINGERS_N_JOINTS],
     const two_fingers_real_t dq[TWO_FINGERS_N_JOINTS],
     const two_fingers_real_t input[TWO_FINGERS_N_JOINTS],
@@ -91,7 +91,7 @@ int two_fingers_forward_dynamics_derivatives(
     enum { ZZ1R = 0, XX2R, XY2, XZ2R, YZ2, ZZ2R, MX2R, MY2, XX3R, XY3, XZ3, YZ3, ZZ3, MX3, MY3, XX4R, XY4,
         XZ4R, YZ4, ZZ4R, MX4R, MY4, XX5R, XY5, XZ5, YZ5, ZZ5, MX5, MY5, FV1, FC1, FV2, FC2, FV3, FC3, IA3,
         FV4, FC4, FV5, FC5, IA5 };
-    int status = TWO_FINGERS_STATUS_OK;
+    two_fingers_status_t status = TWO_FINGERS_STATUS_OK;
 
     if (!two_fingers_within_joints(q, TWO_FINGERS_C(1.0e8))
         || !two_fingers_within_joints(dq, TWO_FINGERS_C(1.0e10))
@@ -133,11 +133,12 @@ int two_fingers_forward_dynamics_derivatives(
         two_fingers_zero(ddq_by_input, 25);
         return TWO_FINGERS_STATUS_PIVOT;
     }
+    /* link right_2: column of the mass matrix */
     const two_fingers_real_t t4 = t2 * parameters[MY5] - t3 * parameters[MX5];
     const two_fingers_real_t t5 = parameters[ZZ5] - TWO_FINGERS_C(0.045) * t4;
     const two_fingers_real_t t6 = TWO_FINGERS_C(1.0) / t1;
     const two_fingers_real_t t7 = t5 * t6;
-    const two_fingers_real_t t8 = TWO_FINGERS_C(-0.09) * t4;
+    const two_fingers_real_t t8 = TWO_FINGERS_C(-0.09) * t4; /* link right_2: inertia of it and all beyond */
     const two_fingers_real_t t9 = parameters[ZZ4R] + (parameters[ZZ5] + t8);
     const two_fingers_real_t t10 = two_fingers_bounded(t9 - t5 * t7);
     if (!(t10 > TWO_FINGERS_C(1.0e-12))) {
@@ -155,11 +156,12 @@ int two_fingers_forward_dynamics_derivatives(
         two_fingers_zero(ddq_by_input, 25);
         return TWO_FINGERS_STATUS_PIVOT;
     }
+    /* link left_2: column of the mass matrix */
     const two_fingers_real_t t14 = t12 * parameters[MY3] - t13 * parameters[MX3];
     const two_fingers_real_t t15 = TWO_FINGERS_C(0.05) * t14 - parameters[ZZ3];
     const two_fingers_real_t t16 = TWO_FINGERS_C(1.0) / t0;
     const two_fingers_real_t t17 = t15 * t16;
-    const two_fingers_real_t t18 = TWO_FINGERS_C(-0.1) * t14;
+    const two_fingers_real_t t18 = TWO_FINGERS_C(-0.1) * t14; /* link left_2: inertia of it and all beyond */
     const two_fingers_real_t t19 = parameters[ZZ2R] + (parameters[ZZ3] + t18);
     const two_fingers_real_t t20 = two_fingers_bounded(t19 - t15 * t17);
     if (!(t20 > TWO_FINGERS_C(1.0e-12))) {
@@ -177,48 +179,59 @@ int two_fingers_forward_dynamics_derivatives(
         two_fingers_zero(ddq_by_input, 25);
         return TWO_FINGERS_STATUS_PIVOT;
     }
+    /* link right_2: inertia of it and all beyond */
     const two_fingers_real_t t22 = t3 * parameters[XX5R] + parameters[XY5] * (TWO_FINGERS_C(-2.0) * t2);
     const two_fingers_real_t t23 = t3 * t22;
     const two_fingers_real_t t24 = parameters[XX5R] - t23 + t8;
     const two_fingers_real_t t25 = parameters[XX4R] + t23;
+    /* link right_2: column of the mass matrix */
     const two_fingers_real_t t27 = t3 * parameters[MY5] + t2 * parameters[MX5];
+    /* link right_2: inertia of it and all beyond */
     const two_fingers_real_t t28 = parameters[XY4] + (parameters[XY5] + t2 * t22
         + TWO_FINGERS_C(-0.045) * t27);
+    /* link right_1: inertia of it and all beyond */
     const two_fingers_real_t t30 = t26 * (t26 * (t24 - t25) + t28 * (TWO_FINGERS_C(2.0) * t29));
-    const two_fingers_real_t t31 = parameters[MY4] + t27;
+    const two_fingers_real_t t31 = parameters[MY4] + t27; /* link right_2: inertia of it and all beyond */
     const two_fingers_real_t t32 = t4 - parameters[MX4R];
-    const two_fingers_real_t t33 = t29 * t31 + t26 * t32;
+    const two_fingers_real_t t33 = t29 * t31 + t26 * t32; /* link right_1: column of the mass matrix */
+    /* link left_2: inertia of it and all beyond */
     const two_fingers_real_t t34 = t13 * parameters[XX3R] + parameters[XY3] * (TWO_FINGERS_C(-2.0) * t12);
     const two_fingers_real_t t35 = t13 * t34;
     const two_fingers_real_t t36 = parameters[XX3R] - t35 + t18;
     const two_fingers_real_t t37 = parameters[XX2R] + t35;
+    /* link left_2: column of the mass matrix */
     const two_fingers_real_t t39 = t13 * parameters[MY3] + t12 * parameters[MX3];
+    /* link left_2: inertia of it and all beyond */
     const two_fingers_real_t t40 = parameters[XY2] + (parameters[XY3] + t12 * t34
         + TWO_FINGERS_C(-0.05) * t39);
+    /* link left_1: inertia of it and all beyond */
     const two_fingers_real_t t42 = t38 * (t38 * (t36 - t37) + t40 * (TWO_FINGERS_C(2.0) * t41));
-    const two_fingers_real_t t43 = parameters[MY2] + t39;
+    const two_fingers_real_t t43 = parameters[MY2] + t39; /* link left_2: inertia of it and all beyond */
     const two_fingers_real_t t44 = t14 - parameters[MX2R];
+    /* link left_1: inertia of it and all beyond */
     const two_fingers_real_t t45 = t37 + t42 + TWO_FINGERS_C(-0.06) * (t41 * t43 + t38 * t44);
     const two_fingers_real_t t46 = parameters[ZZ1R] + (t25 + t30 + TWO_FINGERS_C(-0.06999999999999999) * t33)
         + t45;
+    /* link right_2: column of the mass matrix */
     const two_fingers_real_t t47 = t2 * parameters[YZ5] - t3 * parameters[XZ5];
     const two_fingers_real_t t48 = t2 * parameters[XZ5] + t3 * parameters[YZ5];
     const two_fingers_real_t t49 = t29 * t4 - t26 * t27;
     const two_fingers_real_t t50 = t29 * t47 - t26 * t48 + TWO_FINGERS_C(8.673617379884035e-19) * t49;
     const two_fingers_real_t t51 = t50 * t6;
-    const two_fingers_real_t t52 = t47 - parameters[XZ4R];
+    const two_fingers_real_t t52 = t47 - parameters[XZ4R]; /* link right_2: inertia of it and all beyond */
     const two_fingers_real_t t53 = parameters[YZ4] + t48;
-    const two_fingers_real_t t54 = t29 * t32 - t26 * t31;
+    const two_fingers_real_t t54 = t29 * t32 - t26 * t31; /* link right_1: column of the mass matrix */
     const two_fingers_real_t t55 = t29 * t52 - t26 * t53 + TWO_FINGERS_C(8.673617379884035e-19) * t54
         - t50 * t7;
     const two_fingers_real_t t56 = TWO_FINGERS_C(1.0) / t10;
     const two_fingers_real_t t57 = t55 * t56;
+    /* link left_2: column of the mass matrix */
     const two_fingers_real_t t58 = t12 * parameters[YZ3] - t13 * parameters[XZ3];
     const two_fingers_real_t t59 = t12 * parameters[XZ3] + t13 * parameters[YZ3];
     const two_fingers_real_t t60 = t41 * t58 - t38 * t59;
     const two_fingers_real_t t61 = t60 * t16;
     const two_fingers_real_t t62 = t46 - t50 * t51 - t55 * t57 - t60 * t61;
-    const two_fingers_real_t t63 = t58 - parameters[XZ2R];
+    const two_fingers_real_t t63 = t58 - parameters[XZ2R]; /* link left_2: inertia of it and all beyond */
     const two_fingers_real_t t64 = parameters[YZ2] + t59;
     const two_fingers_real_t t65 = t41 * t63 - t38 * t64 + t60 * t17;
     const two_fingers_real_t t66 = TWO_FINGERS_C(1.0) / t20;
@@ -239,147 +252,172 @@ int two_fingers_forward_dynamics_derivatives(
         two_fingers_zero(ddq_by_input, 25);
         return TWO_FINGERS_STATUS_PIVOT;
     }
-    const two_fingers_real_t t70 = t29 * dq[0];
+    const two_fingers_real_t t70 = t29 * dq[0]; /* link right_1: motion */
     const two_fingers_real_t t71 = t26 * dq[0];
-    const two_fingers_real_t t72 = t2 * t70 - t3 * t71;
+    const two_fingers_real_t t72 = t2 * t70 - t3 * t71; /* link right_2: motion */
     const two_fingers_real_t t73 = t72 * t72;
     const two_fingers_real_t t74 = dq[3] + dq[4];
     const two_fingers_real_t t75 = t74 * t74;
     const two_fingers_real_t t76 = t3 * t70 + t2 * t71;
     const two_fingers_real_t t77 = t76 * t72;
+    /* link right_2: force and moment */
     const two_fingers_real_t t78 = parameters[MX5] * (t73 + t75) + parameters[MY5] * t77;
-    const two_fingers_real_t t79 = t76 * t76;
+    const two_fingers_real_t t79 = t76 * t76; /* link right_2: motion */
+    /* link right_2: force and moment */
     const two_fingers_real_t t80 = parameters[MX5] * t77 + parameters[MY5] * (t79 + t75);
-    const two_fingers_real_t t81 = t71 * t71;
+    const two_fingers_real_t t81 = t71 * t71; /* link right_2: motion */
     const two_fingers_real_t t82 = dq[3] * dq[3];
     const two_fingers_real_t t83 = t82 + t81;
-    const two_fingers_real_t t84 = parameters[MX4R] * t83;
-    const two_fingers_real_t t85 = t70 * t71;
+    const two_fingers_real_t t84 = parameters[MX4R] * t83; /* link right_1: force and moment */
+    const two_fingers_real_t t85 = t70 * t71; /* link right_2: motion */
+    /* link right_2: what it passes on */
     const two_fingers_real_t t86 = t84 - parameters[MY4] * t85 + (t3 * t78 - t2 * t80);
     const two_fingers_real_t t87 = t2 * t78 + t3 * t80;
-    const two_fingers_real_t t88 = t70 * t70;
-    const two_fingers_real_t t89 = parameters[MY4] * (t82 + t88);
+    const two_fingers_real_t t88 = t70 * t70; /* link right_2: motion */
+    const two_fingers_real_t t89 = parameters[MY4] * (t82 + t88); /* link right_1: force and moment */
+    /* link right_1: what it passes on */
     const two_fingers_real_t t90 = t26 * t86 + t29 * (parameters[MX4R] * t85 - t89 - t87);
-    const two_fingers_real_t t91 = t76 * t74;
-    const two_fingers_real_t t92 = TWO_FINGERS_C(2.0) * t91;
-    const two_fingers_real_t t93 = t72 * t74;
-    const two_fingers_real_t t94 = TWO_FINGERS_C(-2.0) * t93;
+    const two_fingers_real_t t91 = t76 * t74; /* link right_2: motion */
+    const two_fingers_real_t t92 = TWO_FINGERS_C(2.0) * t91; /* link right_2: force and moment */
+    const two_fingers_real_t t93 = t72 * t74; /* link right_2: motion */
+    const two_fingers_real_t t94 = TWO_FINGERS_C(-2.0) * t93; /* link right_2: force and moment */
     const two_fingers_real_t t95 = parameters[MX5] * t92 + parameters[MY5] * t94;
-    const two_fingers_real_t t96 = dq[3] * t70;
+    const two_fingers_real_t t96 = dq[3] * t70; /* link right_1: motion */
     const two_fingers_real_t t97 = TWO_FINGERS_C(2.0) * t96;
     const two_fingers_real_t t98 = dq[3] * t71;
     const two_fingers_real_t t99 = TWO_FINGERS_C(2.0) * t98;
+    /* link right_2: what it passes on */
     const two_fingers_real_t t100 = parameters[MX4R] * t97 + parameters[MY4] * t99 + t95;
+    /* link right_1: what it passes on */
     const two_fingers_real_t
         t101 = TWO_FINGERS_C(0.03446827135542729) * (TWO_FINGERS_C(-0.17364817766693028) * t90
         + TWO_FINGERS_C(0.984807753012208) * t100)
         + TWO_FINGERS_C(0.00607768621834256) * (TWO_FINGERS_C(0.984807753012208) * t90
         + TWO_FINGERS_C(0.17364817766693028) * t100);
+    /* link right_2: force and moment */
     const two_fingers_real_t t102 = parameters[XX5R] * t93 + parameters[ZZ5] * t93 + parameters[XY5] * t92
         + parameters[XZ5] * t77;
     const two_fingers_real_t t103 = dq[0] * dq[0];
-    const two_fingers_real_t t104 = TWO_FINGERS_C(-8.673617379884035e-19) * t103;
-    const two_fingers_real_t t105 = t104 + TWO_FINGERS_C(-0.09) * t96;
+    const two_fingers_real_t t104 = TWO_FINGERS_C(-8.673617379884035e-19) * t103; /* link right_1: motion */
+    const two_fingers_real_t t105 = t104 + TWO_FINGERS_C(-0.09) * t96; /* link right_2: motion */
+    /* link right_2: force and moment */
     const two_fingers_real_t t106 = t102 + parameters[YZ5] * (t75 - t73) + parameters[MY5] * t105;
     const two_fingers_real_t t107 = parameters[ZZ5] - parameters[XX5R];
     const two_fingers_real_t t108 = parameters[XY5] * t94 - t91 * t107 + parameters[YZ5] * t77
         - parameters[XZ5] * (t79 - t75);
     const two_fingers_real_t t109 = t108 + parameters[MX5] * t105;
-    const two_fingers_real_t t110 = parameters[ZZ4R] * t98;
+    const two_fingers_real_t t110 = parameters[ZZ4R] * t98; /* link right_1: force and moment */
     const two_fingers_real_t t111 = parameters[XY4] * t97 - (parameters[XX4R] * t98 + t110)
         - parameters[XZ4R] * t85;
     const two_fingers_real_t t112 = parameters[YZ4] * (t82 - t81);
+    /* link right_2: what it passes on */
     const two_fingers_real_t t113 = t111 + t112 + parameters[MY4] * t104 + (t3 * t106 + t2 * t109);
+    /* link right_1: force and moment */
     const two_fingers_real_t t114 = t96 * (parameters[ZZ4R] - parameters[XX4R]);
     const two_fingers_real_t t115 = parameters[XZ4R] * (t88 - t82);
     const two_fingers_real_t t116 = t114 - parameters[XY4] * t99 + parameters[YZ4] * t85 + t115
         - parameters[MX4R] * t104;
+    /* link right_2: what it passes on */
     const two_fingers_real_t t117 = t116 + (t2 * t106 - t3 * t109 + TWO_FINGERS_C(0.045) * t95);
-    const two_fingers_real_t t118 = t41 * dq[0];
+    const two_fingers_real_t t118 = t41 * dq[0]; /* link left_1: motion */
     const two_fingers_real_t t119 = t38 * dq[0];
-    const two_fingers_real_t t120 = t12 * t118 - t13 * t119;
+    const two_fingers_real_t t120 = t12 * t118 - t13 * t119; /* link left_2: motion */
     const two_fingers_real_t t121 = dq[1] + dq[2];
     const two_fingers_real_t t122 = t120 * t121;
     const two_fingers_real_t t123 = t13 * t118 + t12 * t119;
     const two_fingers_real_t t124 = t123 * t121;
-    const two_fingers_real_t t125 = TWO_FINGERS_C(2.0) * t124;
-    const two_fingers_real_t t126 = t123 * t120;
+    const two_fingers_real_t t125 = TWO_FINGERS_C(2.0) * t124; /* link left_2: force and moment */
+    const two_fingers_real_t t126 = t123 * t120; /* link left_2: motion */
+    /* link left_2: force and moment */
     const two_fingers_real_t t127 = parameters[XX3R] * t122 + parameters[ZZ3] * t122 + parameters[XY3] * t125
         + parameters[XZ3] * t126;
-    const two_fingers_real_t t128 = t120 * t120;
+    const two_fingers_real_t t128 = t120 * t120; /* link left_2: motion */
     const two_fingers_real_t t129 = t121 * t121;
-    const two_fingers_real_t t130 = dq[1] * t118;
-    const two_fingers_real_t t131 = TWO_FINGERS_C(-0.1) * t130;
+    const two_fingers_real_t t130 = dq[1] * t118; /* link left_1: motion */
+    const two_fingers_real_t t131 = TWO_FINGERS_C(-0.1) * t130; /* link left_2: motion */
+    /* link left_2: force and moment */
     const two_fingers_real_t t132 = t127 + parameters[YZ3] * (t129 - t128) + parameters[MY3] * t131;
     const two_fingers_real_t t133 = parameters[ZZ3] - parameters[XX3R];
     const two_fingers_real_t t134 = TWO_FINGERS_C(-2.0) * t122;
-    const two_fingers_real_t t135 = t123 * t123;
+    const two_fingers_real_t t135 = t123 * t123; /* link left_2: motion */
+    /* link left_2: force and moment */
     const two_fingers_real_t t136 = parameters[XY3] * t134 - t124 * t133 + parameters[YZ3] * t126
         - parameters[XZ3] * (t135 - t129);
     const two_fingers_real_t t137 = t136 + parameters[MX3] * t131;
-    const two_fingers_real_t t138 = dq[1] * t119;
-    const two_fingers_real_t t139 = parameters[ZZ2R] * t138;
-    const two_fingers_real_t t140 = TWO_FINGERS_C(2.0) * t130;
+    const two_fingers_real_t t138 = dq[1] * t119; /* link left_1: motion */
+    const two_fingers_real_t t139 = parameters[ZZ2R] * t138; /* link left_1: force and moment */
+    const two_fingers_real_t t140 = TWO_FINGERS_C(2.0) * t130; /* link left_1: motion */
     const two_fingers_real_t t141 = t118 * t119;
+    /* link left_1: force and moment */
     const two_fingers_real_t t142 = parameters[XY2] * t140 - (parameters[XX2R] * t138 + t139)
         - parameters[XZ2R] * t141;
-    const two_fingers_real_t t143 = t119 * t119;
+    const two_fingers_real_t t143 = t119 * t119; /* link left_1: motion */
     const two_fingers_real_t t144 = dq[1] * dq[1];
-    const two_fingers_real_t t145 = parameters[YZ2] * (t144 - t143);
+    const two_fingers_real_t t145 = parameters[YZ2] * (t144 - t143); /* link left_1: force and moment */
+    /* link left_1: what it passes on */
     const two_fingers_real_t t146 = t41 * (t142 + t145 + (t13 * t132 + t12 * t137));
+    /* link left_2: force and moment */
     const two_fingers_real_t t147 = parameters[MX3] * t125 + parameters[MY3] * t134;
+    /* link left_1: force and moment */
     const two_fingers_real_t t148 = t130 * (parameters[ZZ2R] - parameters[XX2R]);
-    const two_fingers_real_t t149 = TWO_FINGERS_C(2.0) * t138;
+    const two_fingers_real_t t149 = TWO_FINGERS_C(2.0) * t138; /* link left_1: motion */
     const two_fingers_real_t t150 = t118 * t118;
-    const two_fingers_real_t t151 = parameters[XZ2R] * (t150 - t144);
+    const two_fingers_real_t t151 = parameters[XZ2R] * (t150 - t144); /* link left_1: force and moment */
+    /* link left_2: what it passes on */
     const two_fingers_real_t t152 = t148 - parameters[XY2] * t149 + parameters[YZ2] * t141 + t151
         + (t12 * t132 - t13 * t137 + TWO_FINGERS_C(0.05) * t147);
+    /* link left_1: what it passes on */
     const two_fingers_real_t t153 = t146 + t38 * t152 + TWO_FINGERS_C(0.03) * (parameters[MX2R] * t140
         + parameters[MY2] * t149 + t147);
-    const two_fingers_real_t t154 = two_fingers_sign(dq[0]);
+    const two_fingers_real_t t154 = two_fingers_sign(dq[0]); /* joint wrist: coulomb_friction */
     const two_fingers_real_t t155 = TWO_FINGERS_C(60.0) * (parameters[FV1] * (TWO_FINGERS_C(-60.0) * dq[0])
         - parameters[FC1] * t154) + (t29 * t113 + t26 * t117 + t101 + t153);
-    const two_fingers_real_t t156 = TWO_FINGERS_C(0.034999999999999996) * t103;
+    const two_fingers_real_t t156 = TWO_FINGERS_C(0.034999999999999996) * t103; /* link right_1: motion */
     const two_fingers_real_t t157 = TWO_FINGERS_C(9.81) * t29;
     const two_fingers_real_t t158 = t26 * t156 - t157;
-    const two_fingers_real_t t159 = TWO_FINGERS_C(0.045) * t83;
+    const two_fingers_real_t t159 = TWO_FINGERS_C(0.045) * t83; /* link right_2: motion */
     const two_fingers_real_t t160 = t158 + t159;
-    const two_fingers_real_t t161 = TWO_FINGERS_C(9.81) * t26;
+    const two_fingers_real_t t161 = TWO_FINGERS_C(9.81) * t26; /* link right_1: motion */
     const two_fingers_real_t t162 = t29 * t156 + t161;
-    const two_fingers_real_t t163 = t162 + TWO_FINGERS_C(0.045) * t85;
+    const two_fingers_real_t t163 = t162 + TWO_FINGERS_C(0.045) * t85; /* link right_2: motion */
+    /* link right_2: force and moment */
     const two_fingers_real_t t164 = parameters[MX5] * (t2 * t160 + t3 * t163) + parameters[MY5] * (t3 * t160
         - t2 * t163);
     const two_fingers_real_t t165 = parameters[XX5R] * t77 + parameters[XY5] * (t79 - t73) + t164;
-    const two_fingers_real_t t166 = two_fingers_sign(dq[4]);
+    const two_fingers_real_t t166 = two_fingers_sign(dq[4]); /* joint right_2: coulomb_friction */
     const two_fingers_real_t t167 = TWO_FINGERS_C(30.0) * (parameters[FV5] * (TWO_FINGERS_C(30.0) * dq[4])
         + parameters[FC5] * t166) + t165;
     const two_fingers_real_t t168 = TWO_FINGERS_C(0.6) * input[4] - t167;
+    /* link right_1: force and moment */
     const two_fingers_real_t t169 = parameters[XX4R] * t85 - parameters[XY4] * (t88 - t81)
         - (parameters[MX4R] * t162 + parameters[MY4] * t158);
-    const two_fingers_real_t t170 = two_fingers_sign(dq[3]);
+    const two_fingers_real_t t170 = two_fingers_sign(dq[3]); /* joint right_1: coulomb_friction */
     const two_fingers_real_t t171 = TWO_FINGERS_C(30.0) * (parameters[FV4] * (TWO_FINGERS_C(30.0) * dq[3])
         + parameters[FC4] * t170) - (t169 - (t165 - TWO_FINGERS_C(0.045) * t87));
     const two_fingers_real_t t172 = TWO_FINGERS_C(0.6) * input[3] - t171 - t168 * t7;
     const two_fingers_real_t t173 = TWO_FINGERS_C(2.4) * input[0] + t155 + t168 * t51 + t172 * t57;
-    const two_fingers_real_t t174 = TWO_FINGERS_C(0.03) * t103;
+    const two_fingers_real_t t174 = TWO_FINGERS_C(0.03) * t103; /* link left_1: motion */
     const two_fingers_real_t t175 = t38 * t174 - TWO_FINGERS_C(9.81) * t41;
-    const two_fingers_real_t t176 = t175 + TWO_FINGERS_C(0.05) * (t144 + t143);
+    const two_fingers_real_t t176 = t175 + TWO_FINGERS_C(0.05) * (t144 + t143); /* link left_2: motion */
     const two_fingers_real_t t177 = t12 * t176;
-    const two_fingers_real_t t178 = t41 * t174 + TWO_FINGERS_C(9.81) * t38;
-    const two_fingers_real_t t179 = t178 + TWO_FINGERS_C(0.05) * t141;
+    const two_fingers_real_t t178 = t41 * t174 + TWO_FINGERS_C(9.81) * t38; /* link left_1: motion */
+    const two_fingers_real_t t179 = t178 + TWO_FINGERS_C(0.05) * t141; /* link left_2: motion */
     const two_fingers_real_t t180 = t13 * t176;
+    /* link left_2: force and moment */
     const two_fingers_real_t t181 = parameters[MX3] * (t177 + t13 * t179) + parameters[MY3] * (t180
         - t12 * t179);
     const two_fingers_real_t t182 = parameters[XX3R] * t126 + parameters[XY3] * (t135 - t128) + t181;
-    const two_fingers_real_t t183 = two_fingers_sign(dq[2]);
+    const two_fingers_real_t t183 = two_fingers_sign(dq[2]); /* joint left_2: coulomb_friction */
     const two_fingers_real_t t184 = TWO_FINGERS_C(30.0) * (parameters[FV3] * (TWO_FINGERS_C(30.0) * dq[2])
         + parameters[FC3] * t183) + t182;
     const two_fingers_real_t t185 = TWO_FINGERS_C(0.6) * input[2] - t184;
+    /* link left_2: what it passes on */
     const two_fingers_real_t t186 = t12 * (parameters[MX3] * (t128 + t129) + parameters[MY3] * t126)
         + t13 * (parameters[MX3] * t126 + parameters[MY3] * (t135 + t129));
+    /* link left_1: force and moment */
     const two_fingers_real_t t187 = parameters[XX2R] * t141 - parameters[XY2] * (t150 - t143)
         - (parameters[MX2R] * t178 + parameters[MY2] * t175);
-    const two_fingers_real_t t188 = two_fingers_sign(dq[1]);
+    const two_fingers_real_t t188 = two_fingers_sign(dq[1]); /* joint left_1: coulomb_friction */
     const two_fingers_real_t t189 = TWO_FINGERS_C(30.0) * (parameters[FV2] * (TWO_FINGERS_C(30.0) * dq[1])
         + parameters[FC2] * t188) - (t187 - (t182 - TWO_FINGERS_C(0.05) * t186));
     const two_fingers_real_t t190 = TWO_FINGERS_C(0.6) * input[1] - t189 + t185 * t17;
@@ -396,7 +434,7 @@ int two_fingers_forward_dynamics_derivatives(
     ddq[4] = t196;
     const two_fingers_real_t t197 = TWO_FINGERS_C(0.5) * (parameters[XX5R] + parameters[ZZ5]);
     const two_fingers_real_t t198 = parameters[XX5R] - t197;
-    const two_fingers_real_t t199 = t29 * t3 + t26 * t2;
+    const two_fingers_real_t t199 = t29 * t3 + t26 * t2; /* link right_2: motion */
     const two_fingers_real_t t200 = dq[0] * t199;
     const two_fingers_real_t t201 = t74 * t198 - parameters[XZ5] * t200;
     const two_fingers_real_t t202 = t29 * t2 - t26 * t3;
@@ -407,14 +445,15 @@ int two_fingers_forward_dynamics_derivatives(
     const two_fingers_real_t t207 = t205 + t206;
     const two_fingers_real_t t208 = parameters[YZ5] * t200;
     const two_fingers_real_t t209 = t206 - t208;
+    /* link right_2: inertia, momentum beyond */
     const two_fingers_real_t t210 = t2 * (t204 - t201) - t3 * (t207 + t209);
     const two_fingers_real_t t211 = t3 * t210;
     const two_fingers_real_t t212 = parameters[MY5] * t74;
     const two_fingers_real_t t213 = parameters[MX5] * t74;
     const two_fingers_real_t t214 = t3 * t212 + t2 * t213;
     const two_fingers_real_t t215 = TWO_FINGERS_C(0.045) * t214;
-    const two_fingers_real_t t216 = TWO_FINGERS_C(0.045) * dq[3];
-    const two_fingers_real_t t217 = t27 * t216;
+    const two_fingers_real_t t216 = TWO_FINGERS_C(0.045) * dq[3]; /* link right_2: velocity of its origin */
+    const two_fingers_real_t t217 = t27 * t216; /* link right_2: inertia, momentum beyond */
     const two_fingers_real_t t218 = t217 - t215;
     const two_fingers_real_t t219 = parameters[XZ4R] * t71;
     const two_fingers_real_t t220 = parameters[XY4] * dq[3];
@@ -428,13 +467,18 @@ int two_fingers_forward_dynamics_derivatives(
     const two_fingers_real_t t228 = parameters[XX4R] + t225;
     const two_fingers_real_t t229 = dq[3] * t228 - parameters[XZ4R] * t70 + (t201 + t224
         + (TWO_FINGERS_C(0.045) * t227 + t4 * t216));
+    /* link right_1: inertia, momentum beyond */
     const two_fingers_real_t t230 = t26 * (t26 * (t223 - t221) + t29 * (t226 + t229));
+    /* link right_2: inertia, momentum beyond */
     const two_fingers_real_t t231 = parameters[MY4] * dq[3] + t214;
     const two_fingers_real_t t232 = t227 - parameters[MX4R] * dq[3];
+    /* link right_1: inertia, momentum beyond */
     const two_fingers_real_t t233 = TWO_FINGERS_C(0.07) * (t29 * t231 + t26 * t232);
     const two_fingers_real_t t234 = t29 * t232 - t26 * t231;
     const two_fingers_real_t t235 = parameters[MY5] * t200 + parameters[MX5] * t203;
+    /* link right_2: inertia, momentum beyond */
     const two_fingers_real_t t236 = parameters[MY4] * t70 - parameters[MX4R] * t71 + t235;
+    /* link right_1: inertia, momentum beyond */
     const two_fingers_real_t
         t237 = TWO_FINGERS_C(0.03446827135542729) * (TWO_FINGERS_C(0.984807753012208) * t234
         + TWO_FINGERS_C(-0.17364817766693028) * t236)
@@ -445,7 +489,7 @@ int two_fingers_forward_dynamics_derivatives(
         - TWO_FINGERS_C(-0.984807753012208) * t33 * (TWO_FINGERS_C(-0.00607768621834256) * dq[0]);
     const two_fingers_real_t t239 = TWO_FINGERS_C(0.5) * (parameters[XX3R] + parameters[ZZ3]);
     const two_fingers_real_t t240 = parameters[XX3R] - t239;
-    const two_fingers_real_t t241 = t41 * t13 + t38 * t12;
+    const two_fingers_real_t t241 = t41 * t13 + t38 * t12; /* link left_2: motion */
     const two_fingers_real_t t242 = dq[0] * t241;
     const two_fingers_real_t t243 = t121 * t240 - parameters[XZ3] * t242;
     const two_fingers_real_t t244 = t41 * t12 - t38 * t13;
@@ -456,14 +500,15 @@ int two_fingers_forward_dynamics_derivatives(
     const two_fingers_real_t t249 = t247 + t248;
     const two_fingers_real_t t250 = parameters[YZ3] * t242;
     const two_fingers_real_t t251 = t248 - t250;
+    /* link left_2: inertia, momentum beyond */
     const two_fingers_real_t t252 = t12 * (t246 - t243) - t13 * (t249 + t251);
     const two_fingers_real_t t253 = t13 * t252;
     const two_fingers_real_t t254 = parameters[MY3] * t121;
     const two_fingers_real_t t255 = parameters[MX3] * t121;
     const two_fingers_real_t t256 = t13 * t254 + t12 * t255;
     const two_fingers_real_t t257 = TWO_FINGERS_C(0.05) * t256;
-    const two_fingers_real_t t258 = TWO_FINGERS_C(0.05) * dq[1];
-    const two_fingers_real_t t259 = t39 * t258;
+    const two_fingers_real_t t258 = TWO_FINGERS_C(0.05) * dq[1]; /* link left_2: velocity of its origin */
+    const two_fingers_real_t t259 = t39 * t258; /* link left_2: inertia, momentum beyond */
     const two_fingers_real_t t260 = t259 - t257;
     const two_fingers_real_t t261 = parameters[XZ2R] * t119;
     const two_fingers_real_t t262 = parameters[XY2] * dq[1];
@@ -477,9 +522,12 @@ int two_fingers_forward_dynamics_derivatives(
     const two_fingers_real_t t270 = parameters[XX2R] + t267;
     const two_fingers_real_t t271 = dq[1] * t270 - parameters[XZ2R] * t118 + (t243 + t266
         + (TWO_FINGERS_C(0.05) * t269 + t14 * t258));
+    /* link left_1: inertia, momentum beyond */
     const two_fingers_real_t t272 = t38 * (t38 * (t265 - t263) + t41 * (t268 + t271));
+    /* link left_2: inertia, momentum beyond */
     const two_fingers_real_t t273 = parameters[MY2] * dq[1] + t256;
     const two_fingers_real_t t274 = t269 - parameters[MX2R] * dq[1];
+    /* link left_1: inertia, momentum beyond */
     const two_fingers_real_t t275 = TWO_FINGERS_C(0.08) * (t41 * t273 + t38 * t274);
     const two_fingers_real_t t276 = TWO_FINGERS_C(0.03) * (t41 * t274 - t38 * t273) - t275 + (t263 + t272
         + t275);
@@ -492,18 +540,21 @@ int two_fingers_forward_dynamics_derivatives(
     const two_fingers_real_t t282 = parameters[XY3] * t242 + t245 * t240;
     const two_fingers_real_t t283 = parameters[XY3] * t245 - t242 * t239;
     const two_fingers_real_t t284 = parameters[MY3] * t242 + parameters[MX3] * t245;
-    const two_fingers_real_t t285 = TWO_FINGERS_C(0.05) * t119;
+    const two_fingers_real_t t285 = TWO_FINGERS_C(0.05) * t119; /* link left_2: velocity of its origin */
+    /* link left_2: inertia, momentum beyond */
     const two_fingers_real_t t286 = t12 * t283 - t13 * t282 + (TWO_FINGERS_C(0.05) * t284 + t14 * t285);
+    /* link left_1: derivatives */
     const two_fingers_real_t t287 = TWO_FINGERS_C(2.0) * (t119 * t270 - parameters[XY2] * t118 + t286);
+    /* link left_2: inertia, momentum beyond */
     const two_fingers_real_t t288 = parameters[XY2] * t119 - t118 * t267 - (t12 * t282 + t13 * t283
         + t39 * t285);
-    const two_fingers_real_t t289 = TWO_FINGERS_C(2.0) * t288;
+    const two_fingers_real_t t289 = TWO_FINGERS_C(2.0) * t288; /* link left_1: derivatives */
     const two_fingers_real_t t290 = TWO_FINGERS_C(-0.06) * dq[0];
     const two_fingers_real_t t291 = t41 * t287 + t38 * t289 - (t41 * t44 - t38 * t43) * t290;
     const two_fingers_real_t t292 = TWO_FINGERS_C(1.6666666666666667) * t291;
     const two_fingers_real_t t293 = t191 * (t61 + t17 * t67);
     const two_fingers_real_t t294 = TWO_FINGERS_C(0.6) * t293;
-    const two_fingers_real_t t295 = TWO_FINGERS_C(2.0) * t282;
+    const two_fingers_real_t t295 = TWO_FINGERS_C(2.0) * t282; /* link left_2: derivatives */
     const two_fingers_real_t t296 = TWO_FINGERS_C(2.0) * t283;
     const two_fingers_real_t t297 = TWO_FINGERS_C(0.1) * t119;
     const two_fingers_real_t t298 = t12 * t296 - t13 * t295 + t14 * t297;
@@ -514,11 +565,14 @@ int two_fingers_forward_dynamics_derivatives(
     const two_fingers_real_t t303 = two_fingers_bounded(TWO_FINGERS_C(0.6) * t302);
     const two_fingers_real_t t304 = parameters[XY5] * t200 + t203 * t198;
     const two_fingers_real_t t305 = parameters[XY5] * t203 - t200 * t197;
-    const two_fingers_real_t t306 = TWO_FINGERS_C(0.045) * t71;
+    const two_fingers_real_t t306 = TWO_FINGERS_C(0.045) * t71; /* link right_2: velocity of its origin */
+    /* link right_2: inertia, momentum beyond */
     const two_fingers_real_t t307 = t2 * t305 - t3 * t304 + (TWO_FINGERS_C(0.045) * t235 + t4 * t306);
+    /* link right_1: derivatives */
     const two_fingers_real_t t308 = TWO_FINGERS_C(2.0) * (t71 * t228 - parameters[XY4] * t70 + t307);
+    /* link right_2: inertia, momentum beyond */
     const two_fingers_real_t t309 = parameters[XY4] * t71 - t70 * t225 - (t2 * t304 + t3 * t305 + t27 * t306);
-    const two_fingers_real_t t310 = TWO_FINGERS_C(2.0) * t309;
+    const two_fingers_real_t t310 = TWO_FINGERS_C(2.0) * t309; /* link right_1: derivatives */
     const two_fingers_real_t t311 = TWO_FINGERS_C(-0.01215537243668512) * dq[0];
     const two_fingers_real_t t312 = TWO_FINGERS_C(-0.06893654271085457) * dq[0];
     const two_fingers_real_t t313 = t29 * t308 + t26 * t310 - (TWO_FINGERS_C(0.17364817766693028) * t54 * t311
@@ -527,7 +581,7 @@ int two_fingers_forward_dynamics_derivatives(
     const two_fingers_real_t t315 = t292 * t281 - t278 * t279 + t301 * t294 + t314 * t303;
     const two_fingers_real_t t316 = t191 * (t7 * t57 - t51);
     const two_fingers_real_t t317 = TWO_FINGERS_C(-0.6) * t316;
-    const two_fingers_real_t t318 = TWO_FINGERS_C(2.0) * t304;
+    const two_fingers_real_t t318 = TWO_FINGERS_C(2.0) * t304; /* link right_2: derivatives */
     const two_fingers_real_t t319 = TWO_FINGERS_C(2.0) * t305;
     const two_fingers_real_t t320 = TWO_FINGERS_C(0.09) * t71;
     const two_fingers_real_t t321 = t2 * t319 - t3 * t318 + t4 * t320;
@@ -568,7 +622,7 @@ int two_fingers_forward_dynamics_derivatives(
     ddq_by_input[15] = t339;
     ddq_by_input[20] = t344;
     const two_fingers_real_t t347 = t192 * t241;
-    const two_fingers_real_t t348 = t121 * t245;
+    const two_fingers_real_t t348 = t121 * t245; /* link left_2: motion */
     const two_fingers_real_t t349 = t348 - t347;
     const two_fingers_real_t t350 = t192 * t244;
     const two_fingers_real_t t351 = t121 * t242;
@@ -621,9 +675,13 @@ int two_fingers_forward_dynamics_derivatives(
     const two_fingers_real_t t388 = t245 * t387 - parameters[YZ3] * t121;
     const two_fingers_real_t t389 = parameters[XZ3] * t121 + t242 * t387;
     const two_fingers_real_t t390 = parameters[ZZ2R] + t267;
+    /* link left_2: inertia, momentum beyond */
     const two_fingers_real_t t391 = t119 * t390 - parameters[YZ2] * dq[1] + (t13 * t388 - t12 * t389);
+    /* link left_1: derivatives */
     const two_fingers_real_t t392 = t41 * (TWO_FINGERS_C(2.0) * t391 + (t37 * t373 + t40 * t374));
+    /* link left_2: inertia, momentum beyond */
     const two_fingers_real_t t393 = parameters[XZ2R] * dq[1] - t118 * t390 + (t12 * t388 + t13 * t389);
+    /* link left_1: derivatives */
     const two_fingers_real_t t394 = t38 * (TWO_FINGERS_C(2.0) * t393 + (t40 * t373 + t36 * t374));
     const two_fingers_real_t t395 = t392 + t394 + TWO_FINGERS_C(-0.03) * (t43 * t373 + t44 * t374);
     const two_fingers_real_t t396 = TWO_FINGERS_C(0.4166666666666667) * t395;
@@ -632,7 +690,7 @@ int two_fingers_forward_dynamics_derivatives(
         + TWO_FINGERS_C(2.0) * (t63 * t119 + t64 * t118);
     const two_fingers_real_t t399 = TWO_FINGERS_C(-1.5e3) * parameters[FV2]
         + TWO_FINGERS_C(1.6666666666666667) * t398;
-    const two_fingers_real_t t400 = TWO_FINGERS_C(-2.0) * t397;
+    const two_fingers_real_t t400 = TWO_FINGERS_C(-2.0) * t397; /* link left_2: derivatives */
     const two_fingers_real_t t401 = t400 + t39 * (TWO_FINGERS_C(-0.1) * dq[1])
         + TWO_FINGERS_C(2.0) * (t58 * t119 + t59 * t118);
     const two_fingers_real_t t402 = TWO_FINGERS_C(1.6666666666666667) * t401;
@@ -646,7 +704,7 @@ int two_fingers_forward_dynamics_derivatives(
     ddq_by_input[11] = t328;
     ddq_by_input[16] = t330;
     ddq_by_input[21] = t333;
-    const two_fingers_real_t t403 = t365 + t357;
+    const two_fingers_real_t t403 = t365 + t357; /* link left_2: force and moment */
     const two_fingers_real_t t404 = TWO_FINGERS_C(2.0) * t245;
     const two_fingers_real_t t405 = TWO_FINGERS_C(2.0) * t242;
     const two_fingers_real_t t406 = t404 * t249 + t405 * t246 - (parameters[XZ3] * t403
@@ -679,6 +737,7 @@ int two_fingers_forward_dynamics_derivatives(
     ddq_by_q[12] = t328 * t420 - t334 * t413 + t335 * t421;
     ddq_by_q[17] = t330 * t420 - t339 * t413 + t336 * t421;
     ddq_by_q[22] = t333 * t420 - t344 * t413 + t338 * t421;
+    /* link left_2: derivatives */
     const two_fingers_real_t t422 = TWO_FINGERS_C(2.0) * t388 - (parameters[XY3] * t405
         + parameters[XX3R] * t404);
     const two_fingers_real_t t423 = parameters[XY3] * t404 - TWO_FINGERS_C(2.0) * t389;
@@ -702,7 +761,7 @@ int two_fingers_forward_dynamics_derivatives(
     ddq_by_input[17] = t336;
     ddq_by_input[22] = t338;
     const two_fingers_real_t t431 = t192 * t199;
-    const two_fingers_real_t t432 = t74 * t203;
+    const two_fingers_real_t t432 = t74 * t203; /* link right_2: motion */
     const two_fingers_real_t t433 = t432 - t431;
     const two_fingers_real_t t434 = t192 * t202;
     const two_fingers_real_t t435 = t74 * t200;
@@ -776,9 +835,13 @@ int two_fingers_forward_dynamics_derivatives(
     const two_fingers_real_t t484 = t203 * t483 - parameters[YZ5] * t74;
     const two_fingers_real_t t485 = parameters[XZ5] * t74 + t200 * t483;
     const two_fingers_real_t t486 = parameters[ZZ4R] + t225;
+    /* link right_2: inertia, momentum beyond */
     const two_fingers_real_t t487 = t71 * t486 - parameters[YZ4] * dq[3] + (t3 * t484 - t2 * t485);
+    /* link right_1: derivatives */
     const two_fingers_real_t t488 = t29 * (TWO_FINGERS_C(2.0) * t487 + (t25 * t460 + t28 * t461));
+    /* link right_2: inertia, momentum beyond */
     const two_fingers_real_t t489 = parameters[XZ4R] * dq[3] - t70 * t486 + (t2 * t484 + t3 * t485);
+    /* link right_1: derivatives */
     const two_fingers_real_t t490 = t26 * (TWO_FINGERS_C(2.0) * t489 + (t28 * t460 + t24 * t461));
     const two_fingers_real_t t491 = t26 * (TWO_FINGERS_C(-2.0) * t232) - t29 * (TWO_FINGERS_C(2.0) * t231);
     const two_fingers_real_t t492 = t31 * t460 + t32 * t461;
@@ -793,7 +856,7 @@ int two_fingers_forward_dynamics_derivatives(
         + TWO_FINGERS_C(2.0) * (t52 * t71 + t53 * t70);
     const two_fingers_real_t t497 = TWO_FINGERS_C(-1.5e3) * parameters[FV4]
         + TWO_FINGERS_C(1.6666666666666667) * t496;
-    const two_fingers_real_t t498 = TWO_FINGERS_C(-2.0) * t495;
+    const two_fingers_real_t t498 = TWO_FINGERS_C(-2.0) * t495; /* link right_2: derivatives */
     const two_fingers_real_t t499 = t498 + t27 * (TWO_FINGERS_C(-0.09) * dq[3])
         + TWO_FINGERS_C(2.0) * (t47 * t71 + t48 * t70);
     const two_fingers_real_t t500 = TWO_FINGERS_C(1.6666666666666667) * t499;
@@ -807,7 +870,7 @@ int two_fingers_forward_dynamics_derivatives(
     ddq_by_input[13] = t336;
     ddq_by_input[18] = t340;
     ddq_by_input[23] = t343;
-    const two_fingers_real_t t501 = t451 + t441;
+    const two_fingers_real_t t501 = t451 + t441; /* link right_2: force and moment */
     const two_fingers_real_t t502 = TWO_FINGERS_C(2.0) * t203;
     const two_fingers_real_t t503 = TWO_FINGERS_C(2.0) * t200;
     const two_fingers_real_t t504 = t502 * t207 + t503 * t204 - (parameters[XZ5] * t501
@@ -845,6 +908,7 @@ int two_fingers_forward_dynamics_derivatives(
     ddq_by_q[14] = t336 * t522 - t334 * t516 + t338 * t523;
     ddq_by_q[19] = t340 * t522 - t339 * t516 + t343 * t523;
     ddq_by_q[24] = t343 * t522 - t344 * t516 + t346 * t523;
+    /* link right_2: derivatives */
     const two_fingers_real_t t524 = TWO_FINGERS_C(2.0) * t484 - (parameters[XY5] * t503
         + parameters[XX5R] * t502);
     const two_fingers_real_t t525 = parameters[XY5] * t502 - TWO_FINGERS_C(2.0) * t485;

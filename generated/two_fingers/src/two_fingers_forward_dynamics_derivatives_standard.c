@@ -7,7 +7,7 @@
  * Arm two_fingers, description a6b389943be5f64e.
  * SPDX-License-Identifier: 0BSD
  *
- * Operations: 2163 (1209 mul, 954 add, 0 neg), 5 div, 8 trig, 5 other.
+ * Operations: 2163 (1209 mul, 954 add, 0 neg), 5 div, 8 trig, 5 other calls (sign, select and the like).
  *
  * @param[in]   q             [5]   [rad]                    joint coordinates; norm at most 10000
  * @param[in]   dq            [5]   [rad/s]                  joint velocities; norm at most 100000
@@ -15,9 +15,9 @@
  *                                                           norm at most 1e+09
  * @param[in]   parameters    [65]                           standard parameters; norm at most 1e+09
  * @param[out]  ddq           [5]   [rad/s^2]                joint accelerations
- * @param[out]  ddq_by_q      [25]  [(rad/s^2) per (rad)]    d ddq / d q; 5 x 5, row-major
+ * @param[out]  ddq_by_q      [25]  [(rad/s^2) per rad]      d ddq / d q; 5 x 5, row-major
  * @param[out]  ddq_by_dq     [25]  [(rad/s^2) per (rad/s)]  d ddq / d dq; 5 x 5, row-major
- * @param[out]  ddq_by_input  [25]  [(rad/s^2) per (A)]      d ddq / d input; 5 x 5, row-major
+ * @param[out]  ddq_by_input  [25]  [(rad/s^2) per A]        d ddq / d input; 5 x 5, row-major
  *
  * Coordinates:
  *
@@ -97,11 +97,11 @@
  */
 #include "two_fingers_private.h"
 
-#if TWO_FINGERS_GENERATION != 0x01C0F172UL
+#if TWO_FINGERS_GENERATION != 0x24AB78D7UL
 #error "two_fingers.h and two_fingers_forward_dynamics_derivatives_standard.c are of different generations: generate the arm again"
 #endif
 
-int two_fingers_forward_dynamics_derivatives_standard(
+two_fingers_status_t two_fingers_forward_dynamics_derivatives_standard(
     const two_fingers_real_t q[TWO_FINGERS_N_JOINTS],
     const two_fingers_real_t dq[TWO_FINGERS_N_JOINTS],
     const two_fingers_real_t input[TWO_FINGERS_N_JOINTS],
@@ -115,7 +115,7 @@ int two_fingers_forward_dynamics_derivatives_standard(
         M2, XX3, XY3, XZ3, YY3, YZ3, ZZ3, MX3, MY3, MZ3, M3, XX4, XY4, XZ4, YY4, YZ4, ZZ4, MX4, MY4, MZ4, M4,
         XX5, XY5, XZ5, YY5, YZ5, ZZ5, MX5, MY5, MZ5, M5, FV1, FC1, IA1, FV2, FC2, IA2, FV3, FC3, IA3, FV4,
         FC4, IA4, FV5, FC5, IA5 };
-    int status = TWO_FINGERS_STATUS_OK;
+    two_fingers_status_t status = TWO_FINGERS_STATUS_OK;
 
     if (!two_fingers_within_joints(q, TWO_FINGERS_C(1.0e8))
         || !two_fingers_within_joints(dq, TWO_FINGERS_C(1.0e10))
@@ -157,10 +157,12 @@ int two_fingers_forward_dynamics_derivatives_standard(
         two_fingers_zero(ddq_by_input, 25);
         return TWO_FINGERS_STATUS_PIVOT;
     }
+    /* link right_2: column of the mass matrix */
     const two_fingers_real_t t4 = t2 * parameters[MY5] - t3 * parameters[MX5];
     const two_fingers_real_t t5 = parameters[ZZ5] - TWO_FINGERS_C(0.045) * t4;
     const two_fingers_real_t t6 = TWO_FINGERS_C(1.0) / t1;
     const two_fingers_real_t t7 = t5 * t6;
+    /* link right_2: inertia of it and all beyond */
     const two_fingers_real_t t8 = TWO_FINGERS_C(0.045) * parameters[M5];
     const two_fingers_real_t t9 = TWO_FINGERS_C(0.045) * (t8 + TWO_FINGERS_C(-2.0) * t4);
     const two_fingers_real_t t10 = parameters[ZZ4] + (parameters[ZZ5] + t9);
@@ -181,10 +183,12 @@ int two_fingers_forward_dynamics_derivatives_standard(
         two_fingers_zero(ddq_by_input, 25);
         return TWO_FINGERS_STATUS_PIVOT;
     }
+    /* link left_2: column of the mass matrix */
     const two_fingers_real_t t16 = t14 * parameters[MY3] - t15 * parameters[MX3];
     const two_fingers_real_t t17 = TWO_FINGERS_C(0.05) * t16 - parameters[ZZ3];
     const two_fingers_real_t t18 = TWO_FINGERS_C(1.0) / t0;
     const two_fingers_real_t t19 = t17 * t18;
+    /* link left_2: inertia of it and all beyond */
     const two_fingers_real_t t20 = TWO_FINGERS_C(0.05) * parameters[M3];
     const two_fingers_real_t t21 = TWO_FINGERS_C(0.05) * (t20 + TWO_FINGERS_C(-2.0) * t16);
     const two_fingers_real_t t22 = parameters[ZZ2] + (parameters[ZZ3] + t21);
@@ -205,63 +209,80 @@ int two_fingers_forward_dynamics_derivatives_standard(
         two_fingers_zero(ddq_by_input, 25);
         return TWO_FINGERS_STATUS_PIVOT;
     }
+    /* link right_2: inertia of it and all beyond */
     const two_fingers_real_t t26 = parameters[XX5] - parameters[YY5];
     const two_fingers_real_t t27 = t3 * t26 + parameters[XY5] * (TWO_FINGERS_C(-2.0) * t2);
     const two_fingers_real_t t28 = t3 * t27;
     const two_fingers_real_t t29 = parameters[YY4] + (parameters[XX5] - t28 + t9);
     const two_fingers_real_t t30 = parameters[XX4] + (parameters[YY5] + t28);
+    /* link right_2: column of the mass matrix */
     const two_fingers_real_t t32 = t3 * parameters[MY5] + t2 * parameters[MX5];
+    /* link right_2: inertia of it and all beyond */
     const two_fingers_real_t t33 = parameters[XY4] + (parameters[XY5] + t2 * t27
         + TWO_FINGERS_C(-0.045) * t32);
+    /* link right_1: inertia of it and all beyond */
     const two_fingers_real_t t35 = t31 * (t31 * (t29 - t30) + t33 * (TWO_FINGERS_C(2.0) * t34));
-    const two_fingers_real_t t36 = parameters[MY4] + t32;
+    const two_fingers_real_t t36 = parameters[MY4] + t32; /* link right_2: inertia of it and all beyond */
     const two_fingers_real_t t37 = t4 - t8;
     const two_fingers_real_t t38 = t37 - parameters[MX4];
-    const two_fingers_real_t t39 = t34 * t36 + t31 * t38;
+    const two_fingers_real_t t39 = t34 * t36 + t31 * t38; /* link right_1: column of the mass matrix */
+    /* link right_2: inertia of it and all beyond */
     const two_fingers_real_t t40 = parameters[MZ4] + parameters[MZ5];
+    /* link right_1: inertia of it and all beyond */
     const two_fingers_real_t t41 = TWO_FINGERS_C(-0.984807753012208) * t39
         + TWO_FINGERS_C(-0.17364817766693028) * t40;
+    /* link right_2: inertia of it and all beyond */
     const two_fingers_real_t t42 = parameters[M4] + parameters[M5];
+    /* link right_1: inertia of it and all beyond */
     const two_fingers_real_t t43 = TWO_FINGERS_C(0.03446827135542729) * t42;
     const two_fingers_real_t t44 = TWO_FINGERS_C(0.17364817766693028) * t39
         + TWO_FINGERS_C(-0.984807753012208) * t40;
     const two_fingers_real_t t45 = TWO_FINGERS_C(0.00607768621834256) * t42;
     const two_fingers_real_t t46 = TWO_FINGERS_C(0.03446827135542729) * (t43 + TWO_FINGERS_C(2.0) * t41)
         + TWO_FINGERS_C(0.00607768621834256) * (t45 + TWO_FINGERS_C(-2.0) * t44);
+    /* link left_2: inertia of it and all beyond */
     const two_fingers_real_t t47 = parameters[XX3] - parameters[YY3];
     const two_fingers_real_t t48 = t15 * t47 + parameters[XY3] * (TWO_FINGERS_C(-2.0) * t14);
     const two_fingers_real_t t49 = t15 * t48;
     const two_fingers_real_t t50 = parameters[YY2] + (parameters[XX3] - t49 + t21);
     const two_fingers_real_t t51 = parameters[XX2] + (parameters[YY3] + t49);
+    /* link left_2: column of the mass matrix */
     const two_fingers_real_t t53 = t15 * parameters[MY3] + t14 * parameters[MX3];
+    /* link left_2: inertia of it and all beyond */
     const two_fingers_real_t t54 = parameters[XY2] + (parameters[XY3] + t14 * t48
         + TWO_FINGERS_C(-0.05) * t53);
+    /* link left_1: inertia of it and all beyond */
     const two_fingers_real_t t56 = t52 * (t52 * (t50 - t51) + t54 * (TWO_FINGERS_C(2.0) * t55));
-    const two_fingers_real_t t57 = parameters[MY2] + t53;
+    const two_fingers_real_t t57 = parameters[MY2] + t53; /* link left_2: inertia of it and all beyond */
     const two_fingers_real_t t58 = t16 - t20;
     const two_fingers_real_t t59 = t58 - parameters[MX2];
+    /* link left_1: inertia of it and all beyond */
     const two_fingers_real_t t60 = TWO_FINGERS_C(0.03) * (parameters[M2] + parameters[M3])
         + TWO_FINGERS_C(-2.0) * (t55 * t57 + t52 * t59);
     const two_fingers_real_t t61 = parameters[ZZ1] + (t30 + t35 + t46) + (t51 + t56
         + TWO_FINGERS_C(0.03) * t60);
     const two_fingers_real_t t62 = t61 + TWO_FINGERS_C(3.6e3) * parameters[IA1];
+    /* link right_2: column of the mass matrix */
     const two_fingers_real_t t63 = t2 * parameters[YZ5] - t3 * parameters[XZ5];
     const two_fingers_real_t t64 = t2 * parameters[XZ5] + t3 * parameters[YZ5];
     const two_fingers_real_t t65 = t34 * t4 - t31 * t32;
     const two_fingers_real_t t66 = t34 * t63 - t31 * t64 + TWO_FINGERS_C(8.673617379884035e-19) * t65;
     const two_fingers_real_t t67 = t66 * t6;
+    /* link right_2: inertia of it and all beyond */
     const two_fingers_real_t t68 = t63 + TWO_FINGERS_C(0.045) * parameters[MZ5] - parameters[XZ4];
     const two_fingers_real_t t69 = parameters[YZ4] + t64;
-    const two_fingers_real_t t70 = t34 * t38 - t31 * t36;
+    const two_fingers_real_t t70 = t34 * t38 - t31 * t36; /* link right_1: column of the mass matrix */
     const two_fingers_real_t t71 = t34 * t68 - t31 * t69 + TWO_FINGERS_C(8.673617379884035e-19) * t70
         - t66 * t7;
     const two_fingers_real_t t72 = TWO_FINGERS_C(1.0) / t12;
     const two_fingers_real_t t73 = t71 * t72;
+    /* link left_2: column of the mass matrix */
     const two_fingers_real_t t74 = t14 * parameters[YZ3] - t15 * parameters[XZ3];
     const two_fingers_real_t t75 = t14 * parameters[XZ3] + t15 * parameters[YZ3];
     const two_fingers_real_t t76 = t55 * t74 - t52 * t75;
     const two_fingers_real_t t77 = t76 * t18;
     const two_fingers_real_t t78 = t62 - t66 * t67 - t71 * t73 - t76 * t77;
+    /* link left_2: inertia of it and all beyond */
     const two_fingers_real_t t79 = t74 + TWO_FINGERS_C(0.05) * parameters[MZ3] - parameters[XZ2];
     const two_fingers_real_t t80 = parameters[YZ2] + t75;
     const two_fingers_real_t t81 = t55 * t79 - t52 * t80 + t76 * t19;
@@ -283,20 +304,20 @@ int two_fingers_forward_dynamics_derivatives_standard(
         two_fingers_zero(ddq_by_input, 25);
         return TWO_FINGERS_STATUS_PIVOT;
     }
-    const two_fingers_real_t t86 = t31 * dq[0];
-    const two_fingers_real_t t87 = t86 * t86;
+    const two_fingers_real_t t86 = t31 * dq[0]; /* link right_1: motion */
+    const two_fingers_real_t t87 = t86 * t86; /* link right_2: motion */
     const two_fingers_real_t t88 = dq[3] * dq[3];
     const two_fingers_real_t t89 = t87 + t88;
     const two_fingers_real_t t90 = TWO_FINGERS_C(0.045) * t89;
-    const two_fingers_real_t t91 = TWO_FINGERS_C(-9.81) * t34;
-    const two_fingers_real_t t92 = dq[0] * dq[0];
-    const two_fingers_real_t t93 = TWO_FINGERS_C(0.034999999999999996) * t92;
+    const two_fingers_real_t t91 = TWO_FINGERS_C(-9.81) * t34; /* link right_1: motion */
+    const two_fingers_real_t t92 = dq[0] * dq[0]; /* link wrist: motion */
+    const two_fingers_real_t t93 = TWO_FINGERS_C(0.034999999999999996) * t92; /* link right_1: motion */
     const two_fingers_real_t t94 = t91 + t31 * t93;
-    const two_fingers_real_t t95 = t90 + t94;
-    const two_fingers_real_t t96 = TWO_FINGERS_C(9.81) * t31;
+    const two_fingers_real_t t95 = t90 + t94; /* link right_2: motion */
+    const two_fingers_real_t t96 = TWO_FINGERS_C(9.81) * t31; /* link right_1: motion */
     const two_fingers_real_t t97 = t96 + t34 * t93;
     const two_fingers_real_t t98 = t34 * dq[0];
-    const two_fingers_real_t t99 = t98 * t86;
+    const two_fingers_real_t t99 = t98 * t86; /* link right_2: motion */
     const two_fingers_real_t t100 = t97 + TWO_FINGERS_C(0.045) * t99;
     const two_fingers_real_t t101 = t3 * t95 - t2 * t100;
     const two_fingers_real_t t102 = t3 * t86 - t2 * t98;
@@ -305,43 +326,49 @@ int two_fingers_forward_dynamics_derivatives_standard(
     const two_fingers_real_t t105 = t104 * t104;
     const two_fingers_real_t t106 = t3 * t98 + t2 * t86;
     const two_fingers_real_t t107 = t106 * t102;
+    /* link right_2: force and moment */
     const two_fingers_real_t t108 = parameters[M5] * t101 + (parameters[MX5] * (t105 + t103)
         - parameters[MY5] * t107);
-    const two_fingers_real_t t109 = t2 * t95 + t3 * t100;
+    const two_fingers_real_t t109 = t2 * t95 + t3 * t100; /* link right_2: motion */
     const two_fingers_real_t t110 = t106 * t106;
+    /* link right_2: force and moment */
     const two_fingers_real_t t111 = parameters[M5] * t109 - (parameters[MY5] * (t105 + t110)
         - parameters[MX5] * t107);
-    const two_fingers_real_t t112 = t89 * parameters[MX4];
+    const two_fingers_real_t t112 = t89 * parameters[MX4]; /* link right_1: force and moment */
+    /* link right_2: what it passes on */
     const two_fingers_real_t t113 = parameters[M4] * t94 + (t112 - t99 * parameters[MY4]) + (t3 * t108
         + t2 * t111);
     const two_fingers_real_t t114 = t2 * t108 - t3 * t111;
-    const two_fingers_real_t t115 = t98 * t98;
-    const two_fingers_real_t t116 = (t115 + t88) * parameters[MY4];
+    const two_fingers_real_t t115 = t98 * t98; /* link right_2: motion */
+    const two_fingers_real_t t116 = (t115 + t88) * parameters[MY4]; /* link right_1: force and moment */
+    /* link right_1: what it passes on */
     const two_fingers_real_t t117 = t34 * (parameters[M4] * t97 + (t99 * parameters[MX4] - t116) - t114);
     const two_fingers_real_t t118 = t31 * t113 + t117;
-    const two_fingers_real_t t119 = t104 * t106;
-    const two_fingers_real_t t120 = TWO_FINGERS_C(2.0) * t119;
-    const two_fingers_real_t t121 = t104 * t102;
-    const two_fingers_real_t t122 = TWO_FINGERS_C(2.0) * t121;
+    const two_fingers_real_t t119 = t104 * t106; /* link right_2: motion */
+    const two_fingers_real_t t120 = TWO_FINGERS_C(2.0) * t119; /* link right_2: force and moment */
+    const two_fingers_real_t t121 = t104 * t102; /* link right_2: motion */
+    const two_fingers_real_t t122 = TWO_FINGERS_C(2.0) * t121; /* link right_2: force and moment */
     const two_fingers_real_t t123 = parameters[MX5] * t120 + parameters[MY5] * t122 - parameters[MZ5] * (t110
         + t103);
-    const two_fingers_real_t t124 = TWO_FINGERS_C(8.673617379884035e-19) * t92;
+    const two_fingers_real_t t124 = TWO_FINGERS_C(8.673617379884035e-19) * t92; /* link right_1: motion */
     const two_fingers_real_t t125 = dq[3] * t98;
-    const two_fingers_real_t t126 = t124 + TWO_FINGERS_C(0.09) * t125;
-    const two_fingers_real_t t127 = parameters[M5] * t126 + t123;
-    const two_fingers_real_t t128 = t115 + t87;
-    const two_fingers_real_t t129 = TWO_FINGERS_C(2.0) * t125;
+    const two_fingers_real_t t126 = t124 + TWO_FINGERS_C(0.09) * t125; /* link right_2: motion */
+    const two_fingers_real_t t127 = parameters[M5] * t126 + t123; /* link right_2: force and moment */
+    const two_fingers_real_t t128 = t115 + t87; /* link right_2: motion */
+    const two_fingers_real_t t129 = TWO_FINGERS_C(2.0) * t125; /* link right_1: motion */
     const two_fingers_real_t t130 = dq[3] * t86;
     const two_fingers_real_t t131 = TWO_FINGERS_C(2.0) * t130;
+    /* link right_1: force and moment */
     const two_fingers_real_t t132 = parameters[M4] * t124 + (t129 * parameters[MX4] + t131 * parameters[MY4]
         - t128 * parameters[MZ4]);
-    const two_fingers_real_t t133 = t132 + t127;
+    const two_fingers_real_t t133 = t132 + t127; /* link right_2: what it passes on */
+    /* link right_1: what it passes on */
     const two_fingers_real_t
         t134 = TWO_FINGERS_C(0.03446827135542729) * (TWO_FINGERS_C(-0.17364817766693028) * t118
         + TWO_FINGERS_C(0.984807753012208) * t133)
         + TWO_FINGERS_C(0.00607768621834256) * (TWO_FINGERS_C(0.984807753012208) * t118
         + TWO_FINGERS_C(0.17364817766693028) * t133);
-    const two_fingers_real_t t135 = parameters[ZZ5] - parameters[YY5];
+    const two_fingers_real_t t135 = parameters[ZZ5] - parameters[YY5]; /* link right_2: force and moment */
     const two_fingers_real_t t136 = parameters[XY5] * t120 - (parameters[XX5] * t121 + t121 * t135)
         - parameters[XZ5] * t107;
     const two_fingers_real_t t137 = t136 + parameters[YZ5] * (t105 - t103) + (parameters[MZ5] * t109
@@ -351,110 +378,132 @@ int two_fingers_forward_dynamics_derivatives_standard(
         + parameters[YZ5] * t107;
     const two_fingers_real_t t140 = t139 - parameters[XZ5] * (t105 - t110) + (parameters[MZ5] * t101
         + parameters[MX5] * t126);
+    /* link right_1: force and moment */
     const two_fingers_real_t t141 = t130 * (parameters[YY4] - parameters[ZZ4]);
     const two_fingers_real_t t142 = t141 - t130 * parameters[XX4] + t129 * parameters[XY4]
         - t99 * parameters[XZ4];
     const two_fingers_real_t t143 = (t87 - t88) * parameters[YZ4];
+    /* link right_2: what it passes on */
     const two_fingers_real_t t144 = t142 - t143 + (parameters[MZ4] * t97 - parameters[MY4] * t124)
         + (t3 * t137 - t2 * t140);
+    /* link right_1: force and moment */
     const two_fingers_real_t t145 = t125 * (parameters[ZZ4] - parameters[XX4]);
     const two_fingers_real_t t146 = t125 * parameters[YY4] + t145 - t131 * parameters[XY4]
         + t99 * parameters[YZ4];
     const two_fingers_real_t t147 = (t115 - t88) * parameters[XZ4];
+    /* link right_2: what it passes on */
     const two_fingers_real_t t148 = t146 + t147 + (parameters[MZ4] * t94 + parameters[MX4] * t124)
         + (t2 * t137 + t3 * t140 + TWO_FINGERS_C(0.045) * t127);
-    const two_fingers_real_t t149 = t55 * dq[0];
+    const two_fingers_real_t t149 = t55 * dq[0]; /* link left_1: motion */
     const two_fingers_real_t t150 = t52 * dq[0];
-    const two_fingers_real_t t151 = t15 * t150 - t14 * t149;
+    const two_fingers_real_t t151 = t15 * t150 - t14 * t149; /* link left_2: motion */
     const two_fingers_real_t t152 = dq[1] + dq[2];
     const two_fingers_real_t t153 = t152 * t151;
-    const two_fingers_real_t t154 = parameters[ZZ3] - parameters[YY3];
-    const two_fingers_real_t t155 = t15 * t149 + t14 * t150;
+    const two_fingers_real_t t154 = parameters[ZZ3] - parameters[YY3]; /* link left_2: force and moment */
+    const two_fingers_real_t t155 = t15 * t149 + t14 * t150; /* link left_2: motion */
     const two_fingers_real_t t156 = t152 * t155;
-    const two_fingers_real_t t157 = TWO_FINGERS_C(2.0) * t156;
-    const two_fingers_real_t t158 = t155 * t151;
+    const two_fingers_real_t t157 = TWO_FINGERS_C(2.0) * t156; /* link left_2: force and moment */
+    const two_fingers_real_t t158 = t155 * t151; /* link left_2: motion */
+    /* link left_2: force and moment */
     const two_fingers_real_t t159 = parameters[XY3] * t157 - (parameters[XX3] * t153 + t153 * t154)
         - parameters[XZ3] * t158;
-    const two_fingers_real_t t160 = t151 * t151;
+    const two_fingers_real_t t160 = t151 * t151; /* link left_2: motion */
     const two_fingers_real_t t161 = t152 * t152;
-    const two_fingers_real_t t162 = TWO_FINGERS_C(0.03) * t92;
+    const two_fingers_real_t t162 = TWO_FINGERS_C(0.03) * t92; /* link left_1: motion */
     const two_fingers_real_t t163 = t52 * t162 - TWO_FINGERS_C(9.81) * t55;
     const two_fingers_real_t t164 = t150 * t150;
     const two_fingers_real_t t165 = dq[1] * dq[1];
-    const two_fingers_real_t t166 = t163 + TWO_FINGERS_C(0.05) * (t164 + t165);
+    const two_fingers_real_t t166 = t163 + TWO_FINGERS_C(0.05) * (t164 + t165); /* link left_2: motion */
     const two_fingers_real_t t167 = t14 * t166;
-    const two_fingers_real_t t168 = t55 * t162 + TWO_FINGERS_C(9.81) * t52;
+    const two_fingers_real_t t168 = t55 * t162 + TWO_FINGERS_C(9.81) * t52; /* link left_1: motion */
     const two_fingers_real_t t169 = t149 * t150;
-    const two_fingers_real_t t170 = t168 + TWO_FINGERS_C(0.05) * t169;
+    const two_fingers_real_t t170 = t168 + TWO_FINGERS_C(0.05) * t169; /* link left_2: motion */
     const two_fingers_real_t t171 = t167 + t15 * t170;
-    const two_fingers_real_t t172 = dq[1] * t149;
-    const two_fingers_real_t t173 = TWO_FINGERS_C(0.1) * t172;
+    const two_fingers_real_t t172 = dq[1] * t149; /* link left_1: motion */
+    const two_fingers_real_t t173 = TWO_FINGERS_C(0.1) * t172; /* link left_2: motion */
+    /* link left_2: force and moment */
     const two_fingers_real_t t174 = t159 + parameters[YZ3] * (t161 - t160) + (parameters[MZ3] * t171
         - parameters[MY3] * t173);
     const two_fingers_real_t t175 = parameters[ZZ3] - parameters[XX3];
     const two_fingers_real_t t176 = TWO_FINGERS_C(2.0) * t153;
     const two_fingers_real_t t177 = parameters[YY3] * t156 + t156 * t175 - parameters[XY3] * t176
         + parameters[YZ3] * t158;
-    const two_fingers_real_t t178 = t155 * t155;
+    const two_fingers_real_t t178 = t155 * t155; /* link left_2: motion */
     const two_fingers_real_t t179 = t15 * t166;
     const two_fingers_real_t t180 = t179 - t14 * t170;
+    /* link left_2: force and moment */
     const two_fingers_real_t t181 = t177 - parameters[XZ3] * (t161 - t178) + (parameters[MZ3] * t180
         + parameters[MX3] * t173);
-    const two_fingers_real_t t182 = dq[1] * t150;
+    const two_fingers_real_t t182 = dq[1] * t150; /* link left_1: motion */
+    /* link left_1: force and moment */
     const two_fingers_real_t t183 = t182 * (parameters[YY2] - parameters[ZZ2]);
-    const two_fingers_real_t t184 = TWO_FINGERS_C(2.0) * t172;
+    const two_fingers_real_t t184 = TWO_FINGERS_C(2.0) * t172; /* link left_1: motion */
+    /* link left_1: force and moment */
     const two_fingers_real_t t185 = t183 - t182 * parameters[XX2] + t184 * parameters[XY2]
         - t169 * parameters[XZ2];
     const two_fingers_real_t t186 = (t164 - t165) * parameters[YZ2];
     const two_fingers_real_t t187 = t168 * parameters[MZ2];
+    /* link left_2: what it passes on */
     const two_fingers_real_t t188 = t185 - t186 + t187 + (t15 * t174 - t14 * t181);
+    /* link left_2: force and moment */
     const two_fingers_real_t t189 = parameters[MX3] * t157 + parameters[MY3] * t176 - parameters[MZ3] * (t178
         + t160);
     const two_fingers_real_t t190 = parameters[M3] * t173 + t189;
+    /* link left_1: force and moment */
     const two_fingers_real_t t191 = t172 * (parameters[ZZ2] - parameters[XX2]);
-    const two_fingers_real_t t192 = TWO_FINGERS_C(2.0) * t182;
+    const two_fingers_real_t t192 = TWO_FINGERS_C(2.0) * t182; /* link left_1: motion */
+    /* link left_1: force and moment */
     const two_fingers_real_t t193 = t172 * parameters[YY2] + t191 - t192 * parameters[XY2]
         + t169 * parameters[YZ2];
-    const two_fingers_real_t t194 = t149 * t149;
-    const two_fingers_real_t t195 = (t194 - t165) * parameters[XZ2];
+    const two_fingers_real_t t194 = t149 * t149; /* link left_1: motion */
+    const two_fingers_real_t t195 = (t194 - t165) * parameters[XZ2]; /* link left_1: force and moment */
     const two_fingers_real_t t196 = t163 * parameters[MZ2];
+    /* link left_2: what it passes on */
     const two_fingers_real_t t197 = t193 + t195 + t196 + (t14 * t174 + t15 * t181
         + TWO_FINGERS_C(0.05) * t190);
-    const two_fingers_real_t t198 = t194 + t164;
+    const two_fingers_real_t t198 = t194 + t164; /* link left_2: motion */
+    /* link left_2: what it passes on */
     const two_fingers_real_t t199 = t184 * parameters[MX2] + t192 * parameters[MY2] - t198 * parameters[MZ2]
         + t190;
+    /* link left_1: what it passes on */
     const two_fingers_real_t t200 = t34 * t144 + t31 * t148 + t134 + (t55 * t188 + t52 * t197
         + TWO_FINGERS_C(0.03) * t199);
-    const two_fingers_real_t t201 = two_fingers_sign(dq[0]);
+    const two_fingers_real_t t201 = two_fingers_sign(dq[0]); /* joint wrist: coulomb_friction */
     const two_fingers_real_t t202 = TWO_FINGERS_C(60.0) * (TWO_FINGERS_C(-60.0) * dq[0] * parameters[FV1]
         - t201 * parameters[FC1]) + t200;
+    /* link right_2: force and moment */
     const two_fingers_real_t t203 = parameters[XY5] * (t110 - t103) - t26 * t107 + (parameters[MX5] * t109
         + parameters[MY5] * t101);
-    const two_fingers_real_t t204 = two_fingers_sign(dq[4]);
+    const two_fingers_real_t t204 = two_fingers_sign(dq[4]); /* joint right_2: coulomb_friction */
     const two_fingers_real_t t205 = TWO_FINGERS_C(30.0) * (TWO_FINGERS_C(30.0) * dq[4] * parameters[FV5]
         + t204 * parameters[FC5]) + t203;
     const two_fingers_real_t t206 = TWO_FINGERS_C(0.6) * input[4] - t205;
+    /* link right_1: force and moment */
     const two_fingers_real_t t207 = t99 * (parameters[XX4] - parameters[YY4]) - (t115 - t87) * parameters[XY4]
         - (parameters[MX4] * t97 + parameters[MY4] * t94);
-    const two_fingers_real_t t208 = two_fingers_sign(dq[3]);
+    const two_fingers_real_t t208 = two_fingers_sign(dq[3]); /* joint right_1: coulomb_friction */
     const two_fingers_real_t t209 = TWO_FINGERS_C(30.0) * (TWO_FINGERS_C(30.0) * dq[3] * parameters[FV4]
         + t208 * parameters[FC4]) - (t207 - (t203 - TWO_FINGERS_C(0.045) * t114));
     const two_fingers_real_t t210 = TWO_FINGERS_C(0.6) * input[3] - t209 - t206 * t7;
     const two_fingers_real_t t211 = TWO_FINGERS_C(2.4) * input[0] + t202 + t206 * t67 + t210 * t73;
+    /* link left_2: force and moment */
     const two_fingers_real_t t212 = parameters[XY3] * (t178 - t160) - t47 * t158 + (parameters[MX3] * t171
         + parameters[MY3] * t180);
-    const two_fingers_real_t t213 = two_fingers_sign(dq[2]);
+    const two_fingers_real_t t213 = two_fingers_sign(dq[2]); /* joint left_2: coulomb_friction */
     const two_fingers_real_t t214 = TWO_FINGERS_C(30.0) * (TWO_FINGERS_C(30.0) * dq[2] * parameters[FV3]
         + t213 * parameters[FC3]) + t212;
     const two_fingers_real_t t215 = TWO_FINGERS_C(0.6) * input[2] - t214;
+    /* link left_2: force and moment */
     const two_fingers_real_t t216 = parameters[M3] * t180 + (parameters[MX3] * (t161 + t160)
         - parameters[MY3] * t158);
     const two_fingers_real_t t217 = parameters[M3] * t171 - (parameters[MY3] * (t161 + t178)
         - parameters[MX3] * t158);
+    /* link left_1: force and moment */
     const two_fingers_real_t t218 = t169 * (parameters[XX2] - parameters[YY2]) - (t194
         - t164) * parameters[XY2] - (t168 * parameters[MX2] + t163 * parameters[MY2]);
+    /* link left_2: what it passes on */
     const two_fingers_real_t t219 = t218 - (t212 - TWO_FINGERS_C(0.05) * (t14 * t216 - t15 * t217));
-    const two_fingers_real_t t220 = two_fingers_sign(dq[1]);
+    const two_fingers_real_t t220 = two_fingers_sign(dq[1]); /* joint left_1: coulomb_friction */
     const two_fingers_real_t t221 = TWO_FINGERS_C(30.0) * (TWO_FINGERS_C(30.0) * dq[1] * parameters[FV2]
         + t220 * parameters[FC2]) - t219;
     const two_fingers_real_t t222 = TWO_FINGERS_C(0.6) * input[1] - t221 + t215 * t19;
@@ -472,7 +521,7 @@ int two_fingers_forward_dynamics_derivatives_standard(
     const two_fingers_real_t t229 = TWO_FINGERS_C(0.5) * (parameters[ZZ5] + (parameters[XX5]
         + parameters[YY5]));
     const two_fingers_real_t t230 = parameters[XX5] - t229;
-    const two_fingers_real_t t231 = t34 * t3 + t31 * t2;
+    const two_fingers_real_t t231 = t34 * t3 + t31 * t2; /* link right_2: motion */
     const two_fingers_real_t t232 = dq[0] * t231;
     const two_fingers_real_t t233 = t104 * t230 - t232 * parameters[XZ5];
     const two_fingers_real_t t234 = t34 * t2 - t31 * t3;
@@ -484,16 +533,17 @@ int two_fingers_forward_dynamics_derivatives_standard(
     const two_fingers_real_t t240 = t238 + t239;
     const two_fingers_real_t t241 = t232 * parameters[YZ5];
     const two_fingers_real_t t242 = t239 - t241;
+    /* link right_2: inertia, momentum beyond */
     const two_fingers_real_t t243 = t2 * (t237 - t233) - t3 * (t240 + t242);
     const two_fingers_real_t t244 = t3 * t243;
     const two_fingers_real_t t245 = t235 * parameters[MZ5] + t104 * parameters[MY5];
     const two_fingers_real_t t246 = t104 * parameters[MX5] - t232 * parameters[MZ5];
     const two_fingers_real_t t247 = t3 * t245 + t2 * t246;
     const two_fingers_real_t t248 = TWO_FINGERS_C(0.045) * t247;
-    const two_fingers_real_t t249 = TWO_FINGERS_C(-0.045) * dq[3];
-    const two_fingers_real_t t250 = t32 * t249;
-    const two_fingers_real_t t251 = TWO_FINGERS_C(0.045) * t86;
-    const two_fingers_real_t t252 = parameters[MZ5] * t251;
+    const two_fingers_real_t t249 = TWO_FINGERS_C(-0.045) * dq[3]; /* link right_2: velocity of its origin */
+    const two_fingers_real_t t250 = t32 * t249; /* link right_2: inertia, momentum beyond */
+    const two_fingers_real_t t251 = TWO_FINGERS_C(0.045) * t86; /* link right_2: velocity of its origin */
+    const two_fingers_real_t t252 = parameters[MZ5] * t251; /* link right_2: inertia, momentum beyond */
     const two_fingers_real_t t253 = t248 + (t250 + t252);
     const two_fingers_real_t t254 = t86 * parameters[XZ4];
     const two_fingers_real_t t255 = dq[3] * parameters[XY4];
@@ -509,15 +559,20 @@ int two_fingers_forward_dynamics_derivatives_standard(
     const two_fingers_real_t t264 = parameters[XX4] - t260;
     const two_fingers_real_t t265 = dq[3] * t264 - t98 * parameters[XZ4] + (t233 + t259
         + (TWO_FINGERS_C(0.045) * t263 - t37 * t249));
+    /* link right_1: inertia, momentum beyond */
     const two_fingers_real_t t266 = t31 * (t31 * (t258 - t256) + t34 * (t262 + t265));
+    /* link right_2: inertia, momentum beyond */
     const two_fingers_real_t t267 = t86 * parameters[MZ4] - dq[3] * parameters[MY4] - t247;
     const two_fingers_real_t t268 = t98 * parameters[MZ4] - dq[3] * parameters[MX4] + (t263
         + parameters[M5] * t249);
+    /* link right_1: inertia, momentum beyond */
     const two_fingers_real_t t269 = TWO_FINGERS_C(0.07) * (t34 * t267 - t31 * t268);
     const two_fingers_real_t t270 = t31 * t267 + t34 * t268;
     const two_fingers_real_t t271 = t232 * parameters[MY5] + t235 * parameters[MX5];
+    /* link right_2: inertia, momentum beyond */
     const two_fingers_real_t t272 = t98 * parameters[MY4] - t86 * parameters[MX4] + (t271
         - parameters[M5] * t251);
+    /* link right_1: inertia, momentum beyond */
     const two_fingers_real_t
         t273 = TWO_FINGERS_C(0.03446827135542729) * (TWO_FINGERS_C(0.984807753012208) * t270
         + TWO_FINGERS_C(-0.17364817766693028) * t272)
@@ -528,7 +583,7 @@ int two_fingers_forward_dynamics_derivatives_standard(
     const two_fingers_real_t t275 = TWO_FINGERS_C(0.5) * (parameters[ZZ3] + (parameters[XX3]
         + parameters[YY3]));
     const two_fingers_real_t t276 = parameters[XX3] - t275;
-    const two_fingers_real_t t277 = t55 * t15 + t52 * t14;
+    const two_fingers_real_t t277 = t55 * t15 + t52 * t14; /* link left_2: motion */
     const two_fingers_real_t t278 = dq[0] * t277;
     const two_fingers_real_t t279 = t152 * t276 - t278 * parameters[XZ3];
     const two_fingers_real_t t280 = t55 * t14 - t52 * t15;
@@ -540,16 +595,17 @@ int two_fingers_forward_dynamics_derivatives_standard(
     const two_fingers_real_t t286 = t284 + t285;
     const two_fingers_real_t t287 = t278 * parameters[YZ3];
     const two_fingers_real_t t288 = t285 - t287;
+    /* link left_2: inertia, momentum beyond */
     const two_fingers_real_t t289 = t14 * (t283 - t279) - t15 * (t286 + t288);
     const two_fingers_real_t t290 = t15 * t289;
     const two_fingers_real_t t291 = t281 * parameters[MZ3] + t152 * parameters[MY3];
     const two_fingers_real_t t292 = t152 * parameters[MX3] - t278 * parameters[MZ3];
     const two_fingers_real_t t293 = t15 * t291 + t14 * t292;
     const two_fingers_real_t t294 = TWO_FINGERS_C(0.05) * t293;
-    const two_fingers_real_t t295 = TWO_FINGERS_C(-0.05) * dq[1];
-    const two_fingers_real_t t296 = t53 * t295;
-    const two_fingers_real_t t297 = TWO_FINGERS_C(0.05) * t150;
-    const two_fingers_real_t t298 = parameters[MZ3] * t297;
+    const two_fingers_real_t t295 = TWO_FINGERS_C(-0.05) * dq[1]; /* link left_2: velocity of its origin */
+    const two_fingers_real_t t296 = t53 * t295; /* link left_2: inertia, momentum beyond */
+    const two_fingers_real_t t297 = TWO_FINGERS_C(0.05) * t150; /* link left_2: velocity of its origin */
+    const two_fingers_real_t t298 = parameters[MZ3] * t297; /* link left_2: inertia, momentum beyond */
     const two_fingers_real_t t299 = t294 + (t296 + t298);
     const two_fingers_real_t t300 = t150 * parameters[XZ2];
     const two_fingers_real_t t301 = dq[1] * parameters[XY2];
@@ -565,12 +621,17 @@ int two_fingers_forward_dynamics_derivatives_standard(
     const two_fingers_real_t t310 = parameters[XX2] - t306;
     const two_fingers_real_t t311 = dq[1] * t310 - t149 * parameters[XZ2] + (t279 + t305
         + (TWO_FINGERS_C(0.05) * t309 - t58 * t295));
+    /* link left_1: inertia, momentum beyond */
     const two_fingers_real_t t312 = t52 * (t52 * (t304 - t302) + t55 * (t308 + t311));
+    /* link left_2: inertia, momentum beyond */
     const two_fingers_real_t t313 = t150 * parameters[MZ2] - dq[1] * parameters[MY2] - t293;
     const two_fingers_real_t t314 = t149 * parameters[MZ2] - dq[1] * parameters[MX2] + (t309
         + parameters[M3] * t295);
+    /* link left_1: inertia, momentum beyond */
     const two_fingers_real_t t315 = TWO_FINGERS_C(0.08) * (t55 * t313 - t52 * t314);
+    /* link left_2: inertia of it and all beyond */
     const two_fingers_real_t t316 = parameters[MZ2] + parameters[MZ3];
+    /* link left_1: inertia, momentum beyond */
     const two_fingers_real_t t317 = TWO_FINGERS_C(0.03) * (t52 * t313 + t55 * t314) + t315
         + t316 * (TWO_FINGERS_C(-0.03) * dq[0]);
     const two_fingers_real_t t318 = t273 + t269 + t274 + (t256 + t266 - t269) + (t317 + (t302 + t312 - t315));
@@ -582,17 +643,20 @@ int two_fingers_forward_dynamics_derivatives_standard(
     const two_fingers_real_t t323 = t278 * parameters[XY3] + t281 * t276;
     const two_fingers_real_t t324 = t278 * t282 + t281 * parameters[XY3];
     const two_fingers_real_t t325 = t278 * parameters[MY3] + t281 * parameters[MX3];
+    /* link left_2: inertia, momentum beyond */
     const two_fingers_real_t t326 = t14 * t324 - t15 * t323 + (TWO_FINGERS_C(0.05) * t325 + t58 * t297);
+    /* link left_1: derivatives */
     const two_fingers_real_t t327 = TWO_FINGERS_C(2.0) * (t150 * t310 - t149 * parameters[XY2] + t326);
+    /* link left_2: inertia, momentum beyond */
     const two_fingers_real_t t328 = t150 * parameters[XY2] + t149 * t307 - (t14 * t323 + t15 * t324
         + t53 * t297);
-    const two_fingers_real_t t329 = TWO_FINGERS_C(2.0) * t328;
+    const two_fingers_real_t t329 = TWO_FINGERS_C(2.0) * t328; /* link left_1: derivatives */
     const two_fingers_real_t t330 = TWO_FINGERS_C(-0.06) * dq[0];
     const two_fingers_real_t t331 = t55 * t327 + t52 * t329 - (t55 * t59 - t52 * t57) * t330;
     const two_fingers_real_t t332 = TWO_FINGERS_C(1.6666666666666667) * t331;
     const two_fingers_real_t t333 = t223 * (t77 + t19 * t83);
     const two_fingers_real_t t334 = TWO_FINGERS_C(0.6) * t333;
-    const two_fingers_real_t t335 = TWO_FINGERS_C(2.0) * t323;
+    const two_fingers_real_t t335 = TWO_FINGERS_C(2.0) * t323; /* link left_2: derivatives */
     const two_fingers_real_t t336 = TWO_FINGERS_C(2.0) * t324;
     const two_fingers_real_t t337 = TWO_FINGERS_C(0.1) * t150;
     const two_fingers_real_t t338 = t14 * t336 - t15 * t335 + t16 * t337;
@@ -603,10 +667,13 @@ int two_fingers_forward_dynamics_derivatives_standard(
     const two_fingers_real_t t343 = two_fingers_bounded(TWO_FINGERS_C(0.6) * t342);
     const two_fingers_real_t t344 = t232 * parameters[XY5] + t235 * t230;
     const two_fingers_real_t t345 = t232 * t236 + t235 * parameters[XY5];
+    /* link right_2: inertia, momentum beyond */
     const two_fingers_real_t t346 = t2 * t345 - t3 * t344 + (TWO_FINGERS_C(0.045) * t271 + t37 * t251);
+    /* link right_1: derivatives */
     const two_fingers_real_t t347 = TWO_FINGERS_C(2.0) * (t86 * t264 - t98 * parameters[XY4] + t346);
+    /* link right_2: inertia, momentum beyond */
     const two_fingers_real_t t348 = t86 * parameters[XY4] + t98 * t261 - (t2 * t344 + t3 * t345 + t32 * t251);
-    const two_fingers_real_t t349 = TWO_FINGERS_C(2.0) * t348;
+    const two_fingers_real_t t349 = TWO_FINGERS_C(2.0) * t348; /* link right_1: derivatives */
     const two_fingers_real_t t350 = TWO_FINGERS_C(-0.01215537243668512) * dq[0];
     const two_fingers_real_t t351 = TWO_FINGERS_C(-0.06893654271085457) * dq[0];
     const two_fingers_real_t t352 = t34 * t347 + t31 * t349 - (TWO_FINGERS_C(0.17364817766693028) * t70 * t350
@@ -615,7 +682,7 @@ int two_fingers_forward_dynamics_derivatives_standard(
     const two_fingers_real_t t354 = t332 * t322 - t319 * t320 + t341 * t334 + t353 * t343;
     const two_fingers_real_t t355 = t223 * (t7 * t73 - t67);
     const two_fingers_real_t t356 = TWO_FINGERS_C(-0.6) * t355;
-    const two_fingers_real_t t357 = TWO_FINGERS_C(2.0) * t344;
+    const two_fingers_real_t t357 = TWO_FINGERS_C(2.0) * t344; /* link right_2: derivatives */
     const two_fingers_real_t t358 = TWO_FINGERS_C(2.0) * t345;
     const two_fingers_real_t t359 = TWO_FINGERS_C(0.09) * t86;
     const two_fingers_real_t t360 = t2 * t358 - t3 * t357 + t4 * t359;
@@ -656,7 +723,7 @@ int two_fingers_forward_dynamics_derivatives_standard(
     ddq_by_input[15] = t378;
     ddq_by_input[20] = t383;
     const two_fingers_real_t t386 = t277 * t224;
-    const two_fingers_real_t t387 = t281 * t152;
+    const two_fingers_real_t t387 = t281 * t152; /* link left_2: motion */
     const two_fingers_real_t t388 = t387 - t386;
     const two_fingers_real_t t389 = t280 * t224;
     const two_fingers_real_t t390 = t278 * t152;
@@ -686,7 +753,7 @@ int two_fingers_forward_dynamics_derivatives_standard(
     const two_fingers_real_t t412 = t14 * t404 - t179;
     const two_fingers_real_t t413 = parameters[MZ3] * t412;
     const two_fingers_real_t t414 = parameters[MX3] * t402 - t413 + ((t411 - t161) * parameters[XZ3] + t410);
-    const two_fingers_real_t t415 = t411 + t397;
+    const two_fingers_real_t t415 = t411 + t397; /* link left_2: columns */
     const two_fingers_real_t t416 = parameters[M3] * t402 + (parameters[MX3] * t392 - parameters[MY3] * t408
         - t415 * parameters[MZ3]);
     const two_fingers_real_t t417 = t55 * t224;
@@ -718,10 +785,14 @@ int two_fingers_forward_dynamics_derivatives_standard(
     const two_fingers_real_t t435 = t281 * t434 - t152 * parameters[YZ3];
     const two_fingers_real_t t436 = t152 * parameters[XZ3] + t278 * t434;
     const two_fingers_real_t t437 = parameters[ZZ2] - t306;
+    /* link left_2: inertia, momentum beyond */
     const two_fingers_real_t t438 = t150 * t437 - dq[1] * parameters[YZ2] + (t15 * t435 - t14 * t436);
+    /* link left_1: derivatives */
     const two_fingers_real_t t439 = t55 * (TWO_FINGERS_C(2.0) * t438 + (t51 * t421 + t54 * t422));
+    /* link left_2: inertia, momentum beyond */
     const two_fingers_real_t t440 = dq[1] * parameters[XZ2] - t149 * t437 + (t14 * t435 + t15 * t436
         + parameters[MZ3] * t295);
+    /* link left_1: derivatives */
     const two_fingers_real_t t441 = t52 * (TWO_FINGERS_C(2.0) * t440 + (t54 * t421 + t50 * t422));
     const two_fingers_real_t t442 = t439 + t441 + TWO_FINGERS_C(-0.03) * (t57 * t421 + t59 * t422);
     const two_fingers_real_t t443 = TWO_FINGERS_C(0.4166666666666667) * t442;
@@ -730,7 +801,7 @@ int two_fingers_forward_dynamics_derivatives_standard(
         + TWO_FINGERS_C(2.0) * (t150 * t79 + t149 * t80);
     const two_fingers_real_t t446 = TWO_FINGERS_C(-1.5e3) * parameters[FV2]
         + TWO_FINGERS_C(1.6666666666666667) * t445;
-    const two_fingers_real_t t447 = TWO_FINGERS_C(-2.0) * t444;
+    const two_fingers_real_t t447 = TWO_FINGERS_C(-2.0) * t444; /* link left_2: derivatives */
     const two_fingers_real_t t448 = t447 + t53 * (TWO_FINGERS_C(-0.1) * dq[1])
         + TWO_FINGERS_C(2.0) * (t150 * t74 + t149 * t75);
     const two_fingers_real_t t449 = TWO_FINGERS_C(1.6666666666666667) * t448;
@@ -822,7 +893,7 @@ int two_fingers_forward_dynamics_derivatives_standard(
     const two_fingers_real_t t496 = t125 + t495;
     const two_fingers_real_t t497 = t493 + TWO_FINGERS_C(0.045) * t496;
     const two_fingers_real_t t498 = t231 * t224;
-    const two_fingers_real_t t499 = t235 * t104;
+    const two_fingers_real_t t499 = t235 * t104; /* link right_2: motion */
     const two_fingers_real_t t500 = t499 - t498;
     const two_fingers_real_t t501 = t234 * t224;
     const two_fingers_real_t t502 = t232 * t104;
@@ -843,7 +914,7 @@ int two_fingers_forward_dynamics_derivatives_standard(
         - parameters[YZ5] * t514;
     const two_fingers_real_t t516 = t232 * t232;
     const two_fingers_real_t t517 = parameters[MX5] * t497 - t512 + ((t516 - t105) * parameters[XZ5] + t515);
-    const two_fingers_real_t t518 = t516 + t509;
+    const two_fingers_real_t t518 = t516 + t509; /* link right_2: columns */
     const two_fingers_real_t t519 = parameters[M5] * t497 + (parameters[MX5] * t504 - parameters[MY5] * t513
         - t518 * parameters[MZ5]);
     const two_fingers_real_t t520 = t34 * t224;
@@ -897,10 +968,14 @@ int two_fingers_forward_dynamics_derivatives_standard(
     const two_fingers_real_t t553 = t235 * t552 - t104 * parameters[YZ5];
     const two_fingers_real_t t554 = t104 * parameters[XZ5] + t232 * t552;
     const two_fingers_real_t t555 = parameters[ZZ4] - t260;
+    /* link right_2: inertia, momentum beyond */
     const two_fingers_real_t t556 = t86 * t555 - dq[3] * parameters[YZ4] + (t3 * t553 - t2 * t554);
+    /* link right_1: derivatives */
     const two_fingers_real_t t557 = t34 * (TWO_FINGERS_C(2.0) * t556 + (t30 * t525 + t33 * t526));
+    /* link right_2: inertia, momentum beyond */
     const two_fingers_real_t t558 = dq[3] * parameters[XZ4] - t98 * t555 + (t2 * t553 + t3 * t554
         + parameters[MZ5] * t249);
+    /* link right_1: derivatives */
     const two_fingers_real_t t559 = t31 * (TWO_FINGERS_C(2.0) * t558 + (t33 * t525 + t29 * t526));
     const two_fingers_real_t t560 = t31 * (TWO_FINGERS_C(-2.0) * t268 - t40 * t526)
         + t34 * (TWO_FINGERS_C(2.0) * t267 - t40 * t525);
@@ -916,7 +991,7 @@ int two_fingers_forward_dynamics_derivatives_standard(
         + TWO_FINGERS_C(2.0) * (t86 * t68 + t98 * t69);
     const two_fingers_real_t t566 = TWO_FINGERS_C(-1.5e3) * parameters[FV4]
         + TWO_FINGERS_C(1.6666666666666667) * t565;
-    const two_fingers_real_t t567 = TWO_FINGERS_C(-2.0) * t564;
+    const two_fingers_real_t t567 = TWO_FINGERS_C(-2.0) * t564; /* link right_2: derivatives */
     const two_fingers_real_t t568 = t567 + t32 * (TWO_FINGERS_C(-0.09) * dq[3])
         + TWO_FINGERS_C(2.0) * (t86 * t63 + t98 * t64);
     const two_fingers_real_t t569 = TWO_FINGERS_C(1.6666666666666667) * t568;

@@ -6,7 +6,7 @@
  * Arm two_fingers, description a6b389943be5f64e.
  * SPDX-License-Identifier: 0BSD
  *
- * Operations: 628 (345 mul, 283 add, 0 neg), 5 div, 8 trig, 5 other.
+ * Operations: 628 (345 mul, 283 add, 0 neg), 5 div, 8 trig, 5 other calls (sign, select and the like).
  *
  * @param[in]   q           [5]   [rad]      joint coordinates; norm at most 10000
  * @param[in]   dq          [5]   [rad/s]    joint velocities; norm at most 100000
@@ -93,11 +93,11 @@
  */
 #include "two_fingers_private.h"
 
-#if TWO_FINGERS_GENERATION != 0x01C0F172UL
+#if TWO_FINGERS_GENERATION != 0x24AB78D7UL
 #error "two_fingers.h and two_fingers_forward_dynamics_standard.c are of different generations: generate the arm again"
 #endif
 
-int two_fingers_forward_dynamics_standard(
+two_fingers_status_t two_fingers_forward_dynamics_standard(
     const two_fingers_real_t q[TWO_FINGERS_N_JOINTS],
     const two_fingers_real_t dq[TWO_FINGERS_N_JOINTS],
     const two_fingers_real_t input[TWO_FINGERS_N_JOINTS],
@@ -108,7 +108,7 @@ int two_fingers_forward_dynamics_standard(
         M2, XX3, XY3, XZ3, YY3, YZ3, ZZ3, MX3, MY3, MZ3, M3, XX4, XY4, XZ4, YY4, YZ4, ZZ4, MX4, MY4, MZ4, M4,
         XX5, XY5, XZ5, YY5, YZ5, ZZ5, MX5, MY5, MZ5, M5, FV1, FC1, IA1, FV2, FC2, IA2, FV3, FC3, IA3, FV4,
         FC4, IA4, FV5, FC5, IA5 };
-    int status = TWO_FINGERS_STATUS_OK;
+    two_fingers_status_t status = TWO_FINGERS_STATUS_OK;
 
     if (!two_fingers_within_joints(q, TWO_FINGERS_C(1.0e8))
         || !two_fingers_within_joints(dq, TWO_FINGERS_C(1.0e10))
@@ -141,10 +141,12 @@ int two_fingers_forward_dynamics_standard(
         two_fingers_zero(out, 5);
         return TWO_FINGERS_STATUS_PIVOT;
     }
+    /* link right_2: column of the mass matrix */
     const two_fingers_real_t t4 = t2 * parameters[MY5] - t3 * parameters[MX5];
     const two_fingers_real_t t5 = TWO_FINGERS_C(0.045) * t4 - parameters[ZZ5];
     const two_fingers_real_t t6 = TWO_FINGERS_C(1.0) / t1;
     const two_fingers_real_t t7 = t5 * t6;
+    /* link right_2: inertia of it and all beyond */
     const two_fingers_real_t t8 = TWO_FINGERS_C(0.045) * parameters[M5];
     const two_fingers_real_t t9 = TWO_FINGERS_C(0.045) * (t8 + TWO_FINGERS_C(-2.0) * t4);
     const two_fingers_real_t t10 = parameters[ZZ4] + (parameters[ZZ5] + t9)
@@ -159,10 +161,12 @@ int two_fingers_forward_dynamics_standard(
         two_fingers_zero(out, 5);
         return TWO_FINGERS_STATUS_PIVOT;
     }
+    /* link left_2: column of the mass matrix */
     const two_fingers_real_t t15 = t14 * parameters[MX3] - t13 * parameters[MY3];
     const two_fingers_real_t t16 = TWO_FINGERS_C(-0.05) * t15 - parameters[ZZ3];
     const two_fingers_real_t t17 = TWO_FINGERS_C(1.0) / t0;
     const two_fingers_real_t t18 = t16 * t17;
+    /* link left_2: inertia of it and all beyond */
     const two_fingers_real_t t19 = TWO_FINGERS_C(0.05) * parameters[M3];
     const two_fingers_real_t t20 = TWO_FINGERS_C(0.05) * (t19 + TWO_FINGERS_C(2.0) * t15);
     const two_fingers_real_t t21 = parameters[ZZ2] + (parameters[ZZ3] + t20)
@@ -177,19 +181,24 @@ int two_fingers_forward_dynamics_standard(
         two_fingers_zero(out, 5);
         return TWO_FINGERS_STATUS_PIVOT;
     }
+    /* link right_2: inertia of it and all beyond */
     const two_fingers_real_t t24 = parameters[XX5] - parameters[YY5];
     const two_fingers_real_t t25 = t3 * t24 - parameters[XY5] * (TWO_FINGERS_C(2.0) * t2);
     const two_fingers_real_t t26 = t3 * t25;
     const two_fingers_real_t t27 = parameters[XX4] + (parameters[YY5] + t26);
+    /* link right_2: column of the mass matrix */
     const two_fingers_real_t t29 = t3 * parameters[MY5] + t2 * parameters[MX5];
+    /* link right_1: inertia of it and all beyond */
     const two_fingers_real_t t31 = (parameters[XY4] + (parameters[XY5] + t2 * t25
         + TWO_FINGERS_C(-0.045) * t29)) * (TWO_FINGERS_C(2.0) * t30);
     const two_fingers_real_t t32 = t28 * (parameters[YY4] + (parameters[XX5] - t26 + t9) - t27) + t31;
-    const two_fingers_real_t t33 = parameters[MY4] + t29;
+    const two_fingers_real_t t33 = parameters[MY4] + t29; /* link right_2: inertia of it and all beyond */
     const two_fingers_real_t t34 = parameters[MX4] - (t4 - t8);
-    const two_fingers_real_t t35 = t28 * t34 - t30 * t33;
+    const two_fingers_real_t t35 = t28 * t34 - t30 * t33; /* link right_1: column of the mass matrix */
+    /* link right_2: inertia of it and all beyond */
     const two_fingers_real_t t36 = parameters[MZ4] + parameters[MZ5];
     const two_fingers_real_t t37 = parameters[M4] + parameters[M5];
+    /* link right_1: inertia of it and all beyond */
     const two_fingers_real_t t38 = TWO_FINGERS_C(0.03446827135542729) * t37
         + TWO_FINGERS_C(2.0) * (TWO_FINGERS_C(0.984807753012208) * t35
         + TWO_FINGERS_C(-0.17364817766693028) * t36);
@@ -198,35 +207,44 @@ int two_fingers_forward_dynamics_standard(
         + TWO_FINGERS_C(0.984807753012208) * t36);
     const two_fingers_real_t t40 = t27 + t28 * t32 + (TWO_FINGERS_C(0.03446827135542729) * t38
         + TWO_FINGERS_C(0.00607768621834256) * t39);
+    /* link left_2: inertia of it and all beyond */
     const two_fingers_real_t t41 = parameters[XX3] - parameters[YY3];
     const two_fingers_real_t t42 = t14 * t41 - parameters[XY3] * (TWO_FINGERS_C(2.0) * t13);
     const two_fingers_real_t t43 = t14 * t42;
     const two_fingers_real_t t44 = parameters[XX2] + (parameters[YY3] + t43);
+    /* link left_2: column of the mass matrix */
     const two_fingers_real_t t46 = t14 * parameters[MY3] + t13 * parameters[MX3];
+    /* link left_1: inertia of it and all beyond */
     const two_fingers_real_t t48 = (parameters[XY2] + (parameters[XY3] + t13 * t42
         + TWO_FINGERS_C(-0.05) * t46)) * (TWO_FINGERS_C(2.0) * t47);
     const two_fingers_real_t t49 = t45 * (parameters[YY2] + (parameters[XX3] - t43 + t20) - t44) + t48;
+    /* link left_1: column of the mass matrix */
     const two_fingers_real_t t50 = t45 * (parameters[MX2] + (t15 + t19)) - t47 * (parameters[MY2] + t46);
+    /* link left_1: inertia of it and all beyond */
     const two_fingers_real_t t51 = t44 + t45 * t49
         + TWO_FINGERS_C(0.03) * (TWO_FINGERS_C(0.03) * (parameters[M2] + parameters[M3])
         + TWO_FINGERS_C(2.0) * t50);
     const two_fingers_real_t t52 = parameters[ZZ1] + t40 + t51 + TWO_FINGERS_C(3.6e3) * parameters[IA1];
+    /* link right_2: column of the mass matrix */
     const two_fingers_real_t t53 = t2 * parameters[YZ5] - t3 * parameters[XZ5];
     const two_fingers_real_t t54 = t2 * parameters[XZ5] + t3 * parameters[YZ5];
     const two_fingers_real_t t55 = t30 * t53 - t28 * t54 + TWO_FINGERS_C(8.673617379884035e-19) * (t30 * t4
         - t28 * t29);
     const two_fingers_real_t t56 = t55 * t6;
+    /* link right_1: column of the mass matrix */
     const two_fingers_real_t t57 = t30 * (t53 + TWO_FINGERS_C(0.045) * parameters[MZ5] - parameters[XZ4])
         - t28 * (parameters[YZ4] + t54);
     const two_fingers_real_t t58 = t57 + TWO_FINGERS_C(-8.673617379884035e-19) * (t28 * t33 + t30 * t34)
         + t55 * t7;
     const two_fingers_real_t t59 = TWO_FINGERS_C(1.0) / t11;
     const two_fingers_real_t t60 = t58 * t59;
+    /* link left_2: column of the mass matrix */
     const two_fingers_real_t t61 = t13 * parameters[YZ3] - t14 * parameters[XZ3];
     const two_fingers_real_t t62 = t13 * parameters[XZ3] + t14 * parameters[YZ3];
     const two_fingers_real_t t63 = t47 * t61 - t45 * t62;
     const two_fingers_real_t t64 = t63 * t17;
     const two_fingers_real_t t65 = t52 - t55 * t56 - t58 * t60 - t63 * t64;
+    /* link left_1: column of the mass matrix */
     const two_fingers_real_t t66 = t47 * (t61 + TWO_FINGERS_C(0.05) * parameters[MZ3] - parameters[XZ2])
         - t45 * (parameters[YZ2] + t62);
     const two_fingers_real_t t67 = t66 + t63 * t18;
@@ -242,17 +260,17 @@ int two_fingers_forward_dynamics_standard(
         two_fingers_zero(out, 5);
         return TWO_FINGERS_STATUS_PIVOT;
     }
-    const two_fingers_real_t t72 = t28 * dq[0];
-    const two_fingers_real_t t73 = t72 * t72;
+    const two_fingers_real_t t72 = t28 * dq[0]; /* link right_1: motion */
+    const two_fingers_real_t t73 = t72 * t72; /* link right_2: motion */
     const two_fingers_real_t t74 = dq[3] * dq[3];
     const two_fingers_real_t t75 = t73 + t74;
-    const two_fingers_real_t t76 = dq[0] * dq[0];
-    const two_fingers_real_t t77 = TWO_FINGERS_C(0.034999999999999996) * t76;
+    const two_fingers_real_t t76 = dq[0] * dq[0]; /* link wrist: motion */
+    const two_fingers_real_t t77 = TWO_FINGERS_C(0.034999999999999996) * t76; /* link right_1: motion */
     const two_fingers_real_t t78 = TWO_FINGERS_C(-9.81) * t30 + t28 * t77;
-    const two_fingers_real_t t79 = TWO_FINGERS_C(0.045) * t75 + t78;
-    const two_fingers_real_t t80 = TWO_FINGERS_C(9.81) * t28 + t30 * t77;
+    const two_fingers_real_t t79 = TWO_FINGERS_C(0.045) * t75 + t78; /* link right_2: motion */
+    const two_fingers_real_t t80 = TWO_FINGERS_C(9.81) * t28 + t30 * t77; /* link right_1: motion */
     const two_fingers_real_t t81 = t30 * dq[0];
-    const two_fingers_real_t t82 = t81 * t72;
+    const two_fingers_real_t t82 = t81 * t72; /* link right_2: motion */
     const two_fingers_real_t t83 = t80 + TWO_FINGERS_C(0.045) * t82;
     const two_fingers_real_t t84 = t3 * t79 - t2 * t83;
     const two_fingers_real_t t85 = t3 * t72 - t2 * t81;
@@ -261,40 +279,47 @@ int two_fingers_forward_dynamics_standard(
     const two_fingers_real_t t88 = t87 * t87;
     const two_fingers_real_t t89 = t3 * t81 + t2 * t72;
     const two_fingers_real_t t90 = t89 * t85;
+    /* link right_2: force and moment */
     const two_fingers_real_t t91 = parameters[M5] * t84 + (parameters[MX5] * (t88 + t86)
         - parameters[MY5] * t90);
-    const two_fingers_real_t t92 = t2 * t79 + t3 * t83;
+    const two_fingers_real_t t92 = t2 * t79 + t3 * t83; /* link right_2: motion */
     const two_fingers_real_t t93 = t89 * t89;
+    /* link right_2: force and moment */
     const two_fingers_real_t t94 = parameters[M5] * t92 - (parameters[MY5] * (t88 + t93)
         - parameters[MX5] * t90);
+    /* link right_2: what it passes on */
     const two_fingers_real_t t95 = parameters[M4] * t78 + (t75 * parameters[MX4] - t82 * parameters[MY4])
         + (t3 * t91 + t2 * t94);
     const two_fingers_real_t t96 = t2 * t91 - t3 * t94;
-    const two_fingers_real_t t97 = t81 * t81;
+    const two_fingers_real_t t97 = t81 * t81; /* link right_2: motion */
+    /* link right_1: force and moment */
     const two_fingers_real_t t98 = parameters[M4] * t80 + (t82 * parameters[MX4] - (t97
         + t74) * parameters[MY4]);
-    const two_fingers_real_t t99 = t28 * t95 + t30 * (t98 - t96);
-    const two_fingers_real_t t100 = t87 * t89;
-    const two_fingers_real_t t101 = TWO_FINGERS_C(2.0) * t100;
-    const two_fingers_real_t t102 = t87 * t85;
-    const two_fingers_real_t t103 = TWO_FINGERS_C(2.0) * t102;
+    const two_fingers_real_t t99 = t28 * t95 + t30 * (t98 - t96); /* link right_1: what it passes on */
+    const two_fingers_real_t t100 = t87 * t89; /* link right_2: motion */
+    const two_fingers_real_t t101 = TWO_FINGERS_C(2.0) * t100; /* link right_2: force and moment */
+    const two_fingers_real_t t102 = t87 * t85; /* link right_2: motion */
+    const two_fingers_real_t t103 = TWO_FINGERS_C(2.0) * t102; /* link right_2: force and moment */
     const two_fingers_real_t t104 = parameters[MX5] * t101 + parameters[MY5] * t103 - parameters[MZ5] * (t93
         + t86);
-    const two_fingers_real_t t105 = TWO_FINGERS_C(8.673617379884035e-19) * t76;
+    const two_fingers_real_t t105 = TWO_FINGERS_C(8.673617379884035e-19) * t76; /* link right_1: motion */
     const two_fingers_real_t t106 = dq[3] * t81;
-    const two_fingers_real_t t107 = t105 + TWO_FINGERS_C(0.09) * t106;
-    const two_fingers_real_t t108 = parameters[M5] * t107 + t104;
-    const two_fingers_real_t t109 = TWO_FINGERS_C(2.0) * t106;
+    const two_fingers_real_t t107 = t105 + TWO_FINGERS_C(0.09) * t106; /* link right_2: motion */
+    const two_fingers_real_t t108 = parameters[M5] * t107 + t104; /* link right_2: force and moment */
+    const two_fingers_real_t t109 = TWO_FINGERS_C(2.0) * t106; /* link right_1: motion */
     const two_fingers_real_t t110 = dq[3] * t72;
     const two_fingers_real_t t111 = TWO_FINGERS_C(2.0) * t110;
+    /* link right_1: force and moment */
     const two_fingers_real_t t112 = t109 * parameters[MX4] + t111 * parameters[MY4] - (t97
         + t73) * parameters[MZ4];
-    const two_fingers_real_t t113 = parameters[M4] * t105 + t112 + t108;
+    const two_fingers_real_t t113 = parameters[M4] * t105 + t112 + t108; /* link right_2: what it passes on */
+    /* link right_1: what it passes on */
     const two_fingers_real_t
         t114 = TWO_FINGERS_C(0.03446827135542729) * (TWO_FINGERS_C(-0.17364817766693028) * t99
         + TWO_FINGERS_C(0.984807753012208) * t113)
         + TWO_FINGERS_C(0.00607768621834256) * (TWO_FINGERS_C(0.984807753012208) * t99
         + TWO_FINGERS_C(0.17364817766693028) * t113);
+    /* link right_2: force and moment */
     const two_fingers_real_t t115 = parameters[XY5] * t101 - (parameters[XX5] * t102 + t102 * (parameters[ZZ5]
         - parameters[YY5]));
     const two_fingers_real_t t116 = t115 - parameters[XZ5] * t90 + parameters[YZ5] * (t88 - t86)
@@ -303,6 +328,7 @@ int two_fingers_forward_dynamics_standard(
         - parameters[XY5] * t103;
     const two_fingers_real_t t118 = t117 + parameters[YZ5] * t90 - parameters[XZ5] * (t88 - t93)
         + (parameters[MZ5] * t84 + parameters[MX5] * t107);
+    /* link right_1: force and moment */
     const two_fingers_real_t t119 = t110 * (parameters[YY4] - parameters[ZZ4]) - t110 * parameters[XX4]
         + t109 * parameters[XY4];
     const two_fingers_real_t t120 = t119 - t82 * parameters[XZ4] + (t74 - t73) * parameters[YZ4]
@@ -311,90 +337,107 @@ int two_fingers_forward_dynamics_standard(
         - t111 * parameters[XY4];
     const two_fingers_real_t t122 = t121 + t82 * parameters[YZ4] + (t97 - t74) * parameters[XZ4]
         + (parameters[MZ4] * t78 + parameters[MX4] * t105);
+    /* link right_2: what it passes on */
     const two_fingers_real_t t123 = t122 + (t2 * t116 + t3 * t118 + TWO_FINGERS_C(0.045) * t108);
+    /* link right_1: what it passes on */
     const two_fingers_real_t t124 = t30 * (t120 + (t3 * t116 - t2 * t118)) + t28 * t123;
-    const two_fingers_real_t t125 = t47 * dq[0];
+    const two_fingers_real_t t125 = t47 * dq[0]; /* link left_1: motion */
     const two_fingers_real_t t126 = t45 * dq[0];
-    const two_fingers_real_t t127 = t14 * t126 - t13 * t125;
+    const two_fingers_real_t t127 = t14 * t126 - t13 * t125; /* link left_2: motion */
     const two_fingers_real_t t128 = dq[1] + dq[2];
     const two_fingers_real_t t129 = t128 * t127;
     const two_fingers_real_t t130 = t14 * t125 + t13 * t126;
     const two_fingers_real_t t131 = t128 * t130;
-    const two_fingers_real_t t132 = TWO_FINGERS_C(2.0) * t131;
+    const two_fingers_real_t t132 = TWO_FINGERS_C(2.0) * t131; /* link left_2: force and moment */
     const two_fingers_real_t t133 = parameters[XY3] * t132 - (parameters[XX3] * t129 + t129 * (parameters[ZZ3]
         - parameters[YY3]));
-    const two_fingers_real_t t134 = t130 * t127;
+    const two_fingers_real_t t134 = t130 * t127; /* link left_2: motion */
     const two_fingers_real_t t135 = t127 * t127;
     const two_fingers_real_t t136 = t128 * t128;
-    const two_fingers_real_t t137 = TWO_FINGERS_C(0.03) * t76;
+    const two_fingers_real_t t137 = TWO_FINGERS_C(0.03) * t76; /* link left_1: motion */
     const two_fingers_real_t t138 = t45 * t137 + TWO_FINGERS_C(-9.81) * t47;
     const two_fingers_real_t t139 = t126 * t126;
     const two_fingers_real_t t140 = dq[1] * dq[1];
-    const two_fingers_real_t t141 = t138 + TWO_FINGERS_C(0.05) * (t139 + t140);
-    const two_fingers_real_t t142 = t47 * t137 + TWO_FINGERS_C(9.81) * t45;
+    const two_fingers_real_t t141 = t138 + TWO_FINGERS_C(0.05) * (t139 + t140); /* link left_2: motion */
+    const two_fingers_real_t t142 = t47 * t137 + TWO_FINGERS_C(9.81) * t45; /* link left_1: motion */
     const two_fingers_real_t t143 = t125 * t126;
-    const two_fingers_real_t t144 = t142 + TWO_FINGERS_C(0.05) * t143;
+    const two_fingers_real_t t144 = t142 + TWO_FINGERS_C(0.05) * t143; /* link left_2: motion */
     const two_fingers_real_t t145 = t13 * t141 + t14 * t144;
-    const two_fingers_real_t t146 = dq[1] * t125;
-    const two_fingers_real_t t147 = TWO_FINGERS_C(0.1) * t146;
+    const two_fingers_real_t t146 = dq[1] * t125; /* link left_1: motion */
+    const two_fingers_real_t t147 = TWO_FINGERS_C(0.1) * t146; /* link left_2: motion */
+    /* link left_2: force and moment */
     const two_fingers_real_t t148 = t133 - parameters[XZ3] * t134 + parameters[YZ3] * (t136 - t135)
         + (parameters[MZ3] * t145 - parameters[MY3] * t147);
     const two_fingers_real_t t149 = TWO_FINGERS_C(2.0) * t129;
     const two_fingers_real_t t150 = parameters[YY3] * t131 - t131 * (parameters[XX3] - parameters[ZZ3])
         - parameters[XY3] * t149;
-    const two_fingers_real_t t151 = t130 * t130;
+    const two_fingers_real_t t151 = t130 * t130; /* link left_2: motion */
     const two_fingers_real_t t152 = t14 * t141 - t13 * t144;
+    /* link left_2: force and moment */
     const two_fingers_real_t t153 = t150 + parameters[YZ3] * t134 - parameters[XZ3] * (t136 - t151)
         + (parameters[MZ3] * t152 + parameters[MX3] * t147);
-    const two_fingers_real_t t154 = dq[1] * t126;
+    const two_fingers_real_t t154 = dq[1] * t126; /* link left_1: motion */
     const two_fingers_real_t t155 = TWO_FINGERS_C(2.0) * t146;
+    /* link left_1: force and moment */
     const two_fingers_real_t t156 = t154 * (parameters[YY2] - parameters[ZZ2]) - t154 * parameters[XX2]
         + t155 * parameters[XY2];
     const two_fingers_real_t t157 = t156 - t143 * parameters[XZ2] + (t140 - t139) * parameters[YZ2]
         + t142 * parameters[MZ2];
+    /* link left_2: force and moment */
     const two_fingers_real_t t158 = parameters[MX3] * t132 + parameters[MY3] * t149 - parameters[MZ3] * (t151
         + t135);
     const two_fingers_real_t t159 = parameters[M3] * t147 + t158;
-    const two_fingers_real_t t160 = TWO_FINGERS_C(2.0) * t154;
+    const two_fingers_real_t t160 = TWO_FINGERS_C(2.0) * t154; /* link left_1: motion */
+    /* link left_1: force and moment */
     const two_fingers_real_t t161 = t146 * parameters[YY2] + t146 * (parameters[ZZ2] - parameters[XX2])
         - t160 * parameters[XY2];
-    const two_fingers_real_t t162 = t125 * t125;
+    const two_fingers_real_t t162 = t125 * t125; /* link left_1: motion */
+    /* link left_1: force and moment */
     const two_fingers_real_t t163 = t161 + t143 * parameters[YZ2] + (t162 - t140) * parameters[XZ2]
         + t138 * parameters[MZ2];
+    /* link left_2: what it passes on */
     const two_fingers_real_t t164 = t163 + (t13 * t148 + t14 * t153 + TWO_FINGERS_C(0.05) * t159);
+    /* link left_1: what it passes on */
     const two_fingers_real_t t165 = t47 * (t157 + (t14 * t148 - t13 * t153)) + t45 * t164;
+    /* link left_1: force and moment */
     const two_fingers_real_t t166 = t155 * parameters[MX2] + t160 * parameters[MY2] - (t162
         + t139) * parameters[MZ2];
-    const two_fingers_real_t t167 = two_fingers_sign(dq[0]);
+    const two_fingers_real_t t167 = two_fingers_sign(dq[0]); /* joint wrist: coulomb_friction */
     const two_fingers_real_t t168 = TWO_FINGERS_C(60.0) * (TWO_FINGERS_C(-60.0) * dq[0] * parameters[FV1]
         - t167 * parameters[FC1]) + (t124 + t114 + (t165 + TWO_FINGERS_C(0.03) * (t166 + t159)));
+    /* link right_2: force and moment */
     const two_fingers_real_t t169 = parameters[XY5] * (t93 - t86) - t24 * t90 + (parameters[MX5] * t92
         + parameters[MY5] * t84);
-    const two_fingers_real_t t170 = two_fingers_sign(dq[4]);
+    const two_fingers_real_t t170 = two_fingers_sign(dq[4]); /* joint right_2: coulomb_friction */
     const two_fingers_real_t t171 = TWO_FINGERS_C(30.0) * (TWO_FINGERS_C(30.0) * dq[4] * parameters[FV5]
         + t170 * parameters[FC5]) + t169;
     const two_fingers_real_t t172 = TWO_FINGERS_C(0.6) * input[4] - t171;
+    /* link right_1: force and moment */
     const two_fingers_real_t t173 = t82 * (parameters[XX4] - parameters[YY4]) - (t97 - t73) * parameters[XY4]
         - (parameters[MX4] * t80 + parameters[MY4] * t78);
-    const two_fingers_real_t t174 = two_fingers_sign(dq[3]);
+    const two_fingers_real_t t174 = two_fingers_sign(dq[3]); /* joint right_1: coulomb_friction */
     const two_fingers_real_t t175 = TWO_FINGERS_C(30.0) * (TWO_FINGERS_C(30.0) * dq[3] * parameters[FV4]
         + t174 * parameters[FC4]) - (t173 - (t169 - TWO_FINGERS_C(0.045) * t96));
     const two_fingers_real_t t176 = TWO_FINGERS_C(0.6) * input[3] - t175 + t172 * t7;
     const two_fingers_real_t t177 = TWO_FINGERS_C(2.4) * input[0] + t168 + t172 * t56 + t176 * t60;
+    /* link left_2: force and moment */
     const two_fingers_real_t t178 = parameters[XY3] * (t151 - t135) - t41 * t134 + (parameters[MX3] * t145
         + parameters[MY3] * t152);
-    const two_fingers_real_t t179 = two_fingers_sign(dq[2]);
+    const two_fingers_real_t t179 = two_fingers_sign(dq[2]); /* joint left_2: coulomb_friction */
     const two_fingers_real_t t180 = TWO_FINGERS_C(30.0) * (TWO_FINGERS_C(30.0) * dq[2] * parameters[FV3]
         + t179 * parameters[FC3]) + t178;
     const two_fingers_real_t t181 = TWO_FINGERS_C(0.6) * input[2] - t180;
+    /* link left_2: force and moment */
     const two_fingers_real_t t182 = parameters[M3] * t152 + (parameters[MX3] * (t136 + t135)
         - parameters[MY3] * t134);
     const two_fingers_real_t t183 = parameters[M3] * t145 - (parameters[MY3] * (t136 + t151)
         - parameters[MX3] * t134);
+    /* link left_1: force and moment */
     const two_fingers_real_t t184 = t143 * (parameters[XX2] - parameters[YY2]) - (t162
         - t139) * parameters[XY2] - (t142 * parameters[MX2] + t138 * parameters[MY2]);
+    /* link left_2: what it passes on */
     const two_fingers_real_t t185 = t184 - (t178 - TWO_FINGERS_C(0.05) * (t13 * t182 - t14 * t183));
-    const two_fingers_real_t t186 = two_fingers_sign(dq[1]);
+    const two_fingers_real_t t186 = two_fingers_sign(dq[1]); /* joint left_1: coulomb_friction */
     const two_fingers_real_t t187 = TWO_FINGERS_C(30.0) * (TWO_FINGERS_C(30.0) * dq[1] * parameters[FV2]
         + t186 * parameters[FC2]) - t185;
     const two_fingers_real_t t188 = TWO_FINGERS_C(0.6) * input[1] - t187 + t181 * t18;

@@ -26,15 +26,15 @@
  */
 #include "two_fingers_private.h"
 
-#if TWO_FINGERS_GENERATION != 0x01C0F172UL
+#if TWO_FINGERS_GENERATION != 0x24AB78D7UL
 #error "two_fingers.h and two_fingers_forward_kinematics.c are of different generations: generate the arm again"
 #endif
 
-int two_fingers_forward_kinematics(
+two_fingers_status_t two_fingers_forward_kinematics(
     const two_fingers_real_t q[TWO_FINGERS_N_JOINTS],
     two_fingers_real_t out[16 * TWO_FINGERS_N_LINKS])
 {
-    int status = TWO_FINGERS_STATUS_OK;
+    two_fingers_status_t status = TWO_FINGERS_STATUS_OK;
 
     if (!two_fingers_within_joints(q, TWO_FINGERS_C(1.0e8))) {
         status |= TWO_FINGERS_STATUS_INPUT;
@@ -61,7 +61,7 @@ int two_fingers_forward_kinematics(
     out[10] = TWO_FINGERS_C(1.0);
     out[11] = TWO_FINGERS_C(0.2);
     out[15] = TWO_FINGERS_C(1.0);
-    const two_fingers_real_t t3 = t0 * t2;
+    const two_fingers_real_t t3 = t0 * t2; /* link left_1: pose */
     out[16] = t3;
     const two_fingers_real_t t5 = t0 * t4;
     out[17] = -t5;
@@ -91,6 +91,7 @@ int two_fingers_forward_kinematics(
     out[41] = t2 * t10 - t4 * t11;
     out[43] = TWO_FINGERS_C(0.05) * t4 + TWO_FINGERS_C(0.28);
     out[47] = TWO_FINGERS_C(1.0);
+    /* link right_1: pose */
     const two_fingers_real_t t12 = TWO_FINGERS_C(0.984807753012208) * t0
         + TWO_FINGERS_C(0.17364817766693028) * t1;
     const two_fingers_real_t t14 = t13 * t12;

@@ -67,11 +67,11 @@
  */
 #include "two_fingers_private.h"
 
-#if TWO_FINGERS_GENERATION != 0x01C0F172UL
+#if TWO_FINGERS_GENERATION != 0x24AB78D7UL
 #error "two_fingers.h and two_fingers_gravity.c are of different generations: generate the arm again"
 #endif
 
-int two_fingers_gravity(
+two_fingers_status_t two_fingers_gravity(
     const two_fingers_real_t q[TWO_FINGERS_N_JOINTS],
     const two_fingers_real_t parameters[TWO_FINGERS_N_PARAMETERS],
     two_fingers_real_t out[TWO_FINGERS_N_JOINTS])
@@ -79,7 +79,7 @@ int two_fingers_gravity(
     enum { ZZ1R = 0, XX2R, XY2, XZ2R, YZ2, ZZ2R, MX2R, MY2, XX3R, XY3, XZ3, YZ3, ZZ3, MX3, MY3, XX4R, XY4,
         XZ4R, YZ4, ZZ4R, MX4R, MY4, XX5R, XY5, XZ5, YZ5, ZZ5, MX5, MY5, FV1, FC1, FV2, FC2, FV3, FC3, IA3,
         FV4, FC4, FV5, FC5, IA5 };
-    int status = TWO_FINGERS_STATUS_OK;
+    two_fingers_status_t status = TWO_FINGERS_STATUS_OK;
 
     if (!two_fingers_within_joints(q, TWO_FINGERS_C(1.0e8))
         || !TWO_FINGERS_PARAMETERS_USABLE(two_fingers_within(parameters, 41, TWO_FINGERS_C(1.0e18)))) {
@@ -98,14 +98,16 @@ int two_fingers_gravity(
     TWO_FINGERS_SINCOS(q[3], &t7, &t10);
     two_fingers_real_t t9, t12;
     TWO_FINGERS_SINCOS(q[4], &t9, &t12);
-    const two_fingers_real_t t1 = TWO_FINGERS_C(-9.81) * t0;
+    const two_fingers_real_t t1 = TWO_FINGERS_C(-9.81) * t0; /* link left_1: motion */
     const two_fingers_real_t t4 = TWO_FINGERS_C(9.81) * t3;
+    /* link left_2: force and moment */
     const two_fingers_real_t t6 = parameters[MX3] * (t2 * t1 + t5 * t4) + parameters[MY3] * (t5 * t1
         - t2 * t4);
     out[1] = TWO_FINGERS_C(1.6666666666666667) * (parameters[MX2R] * t4 + parameters[MY2] * t1 + t6);
     out[2] = TWO_FINGERS_C(1.6666666666666667) * t6;
-    const two_fingers_real_t t8 = TWO_FINGERS_C(-9.81) * t7;
+    const two_fingers_real_t t8 = TWO_FINGERS_C(-9.81) * t7; /* link right_1: motion */
     const two_fingers_real_t t11 = TWO_FINGERS_C(9.81) * t10;
+    /* link right_2: force and moment */
     const two_fingers_real_t t13 = parameters[MX5] * (t9 * t8 + t12 * t11) + parameters[MY5] * (t12 * t8
         - t9 * t11);
     out[3] = TWO_FINGERS_C(1.6666666666666667) * (parameters[MX4R] * t11 + parameters[MY4] * t8 + t13);

@@ -90,11 +90,11 @@
  */
 #include "two_fingers_private.h"
 
-#if TWO_FINGERS_GENERATION != 0x01C0F172UL
+#if TWO_FINGERS_GENERATION != 0x24AB78D7UL
 #error "two_fingers.h and two_fingers_gravity_standard.c are of different generations: generate the arm again"
 #endif
 
-int two_fingers_gravity_standard(
+two_fingers_status_t two_fingers_gravity_standard(
     const two_fingers_real_t q[TWO_FINGERS_N_JOINTS],
     const two_fingers_real_t parameters[TWO_FINGERS_N_STANDARD_PARAMETERS],
     two_fingers_real_t out[TWO_FINGERS_N_JOINTS])
@@ -103,7 +103,7 @@ int two_fingers_gravity_standard(
         M2, XX3, XY3, XZ3, YY3, YZ3, ZZ3, MX3, MY3, MZ3, M3, XX4, XY4, XZ4, YY4, YZ4, ZZ4, MX4, MY4, MZ4, M4,
         XX5, XY5, XZ5, YY5, YZ5, ZZ5, MX5, MY5, MZ5, M5, FV1, FC1, IA1, FV2, FC2, IA2, FV3, FC3, IA3, FV4,
         FC4, IA4, FV5, FC5, IA5 };
-    int status = TWO_FINGERS_STATUS_OK;
+    two_fingers_status_t status = TWO_FINGERS_STATUS_OK;
 
     if (!two_fingers_within_joints(q, TWO_FINGERS_C(1.0e8))
         || !TWO_FINGERS_PARAMETERS_USABLE(two_fingers_within(parameters, 65, TWO_FINGERS_C(1.0e18)))) {
@@ -122,37 +122,45 @@ int two_fingers_gravity_standard(
     TWO_FINGERS_SINCOS(q[3], &t0, &t3);
     two_fingers_real_t t2, t5;
     TWO_FINGERS_SINCOS(q[4], &t2, &t5);
-    const two_fingers_real_t t1 = TWO_FINGERS_C(-9.81) * t0;
+    const two_fingers_real_t t1 = TWO_FINGERS_C(-9.81) * t0; /* link right_1: motion */
     const two_fingers_real_t t4 = TWO_FINGERS_C(9.81) * t3;
-    const two_fingers_real_t t6 = t2 * t1 + t5 * t4;
-    const two_fingers_real_t t7 = t6 * parameters[MZ5];
-    const two_fingers_real_t t8 = t5 * t1 - t2 * t4;
-    const two_fingers_real_t t9 = t8 * parameters[MZ5];
+    const two_fingers_real_t t6 = t2 * t1 + t5 * t4; /* link right_2: motion */
+    const two_fingers_real_t t7 = t6 * parameters[MZ5]; /* link right_2: force and moment */
+    const two_fingers_real_t t8 = t5 * t1 - t2 * t4; /* link right_2: motion */
+    const two_fingers_real_t t9 = t8 * parameters[MZ5]; /* link right_2: force and moment */
+    /* link right_1: what it passes on */
     const two_fingers_real_t t10 = t0 * (t2 * t9 - t5 * t7 - t4 * parameters[MZ4]);
     const two_fingers_real_t t11 = t3 * (t1 * parameters[MZ4] + (t2 * t7 + t5 * t9));
-    const two_fingers_real_t t12 = t8 * parameters[M5];
+    const two_fingers_real_t t12 = t8 * parameters[M5]; /* link right_2: force and moment */
     const two_fingers_real_t t13 = t6 * parameters[M5];
+    /* link right_1: what it passes on */
     const two_fingers_real_t t14 = t3 * (t1 * parameters[M4] + (t5 * t12 + t2 * t13));
-    const two_fingers_real_t t15 = t5 * t13 - t2 * t12;
+    const two_fingers_real_t t15 = t5 * t13 - t2 * t12; /* link right_2: what it passes on */
+    /* link right_1: what it passes on */
     const two_fingers_real_t t16 = t10 - t11 + TWO_FINGERS_C(8.673617379884035e-19) * (t14
         + t0 * (t4 * parameters[M4] + t15));
-    const two_fingers_real_t t18 = TWO_FINGERS_C(-9.81) * t17;
+    const two_fingers_real_t t18 = TWO_FINGERS_C(-9.81) * t17; /* link left_1: motion */
     const two_fingers_real_t t21 = TWO_FINGERS_C(9.81) * t20;
-    const two_fingers_real_t t23 = t19 * t18 + t22 * t21;
-    const two_fingers_real_t t24 = t23 * parameters[MZ3];
-    const two_fingers_real_t t25 = t19 * t21 - t22 * t18;
-    const two_fingers_real_t t26 = t25 * parameters[MZ3];
+    const two_fingers_real_t t23 = t19 * t18 + t22 * t21; /* link left_2: motion */
+    const two_fingers_real_t t24 = t23 * parameters[MZ3]; /* link left_2: force and moment */
+    const two_fingers_real_t t25 = t19 * t21 - t22 * t18; /* link left_2: motion */
+    const two_fingers_real_t t26 = t25 * parameters[MZ3]; /* link left_2: force and moment */
+    /* link left_1: what it passes on */
     const two_fingers_real_t t27 = t17 * (t21 * parameters[MZ2] + (t22 * t24 + t19 * t26));
     const two_fingers_real_t t28 = t20 * (t22 * t26 - t19 * t24 - t18 * parameters[MZ2]);
     out[0] = TWO_FINGERS_C(0.4166666666666667) * (t16 + (t28 - t27));
+    /* link left_2: force and moment */
     const two_fingers_real_t t29 = t23 * parameters[MX3] - t25 * parameters[MY3];
+    /* link left_2: what it passes on */
     const two_fingers_real_t t30 = TWO_FINGERS_C(0.05) * (t19 * (t25 * parameters[M3])
         + t22 * (t23 * parameters[M3]));
     const two_fingers_real_t t31 = TWO_FINGERS_C(1.6666666666666667) * (t21 * parameters[MX2]
         + t18 * parameters[MY2] + (t29 + t30));
     out[1] = t31;
     out[2] = TWO_FINGERS_C(1.6666666666666667) * t29;
+    /* link right_2: force and moment */
     const two_fingers_real_t t32 = t6 * parameters[MX5] + t8 * parameters[MY5];
+    /* link right_2: what it passes on */
     const two_fingers_real_t t33 = t4 * parameters[MX4] + t1 * parameters[MY4] + (t32
         + TWO_FINGERS_C(0.045) * t15);
     out[3] = TWO_FINGERS_C(1.6666666666666667) * t33;

@@ -6,7 +6,7 @@
  * Arm two_fingers, description a6b389943be5f64e.
  * SPDX-License-Identifier: 0BSD
  *
- * Operations: 420 (234 mul, 186 add, 0 neg), 8 trig, 5 other.
+ * Operations: 420 (234 mul, 186 add, 0 neg), 8 trig, 5 other calls (sign, select and the like).
  *
  * @param[in]   q           [5]   [rad]      joint coordinates; norm at most 10000
  * @param[in]   dq          [5]   [rad/s]    joint velocities; norm at most 100000
@@ -69,11 +69,11 @@
  */
 #include "two_fingers_private.h"
 
-#if TWO_FINGERS_GENERATION != 0x01C0F172UL
+#if TWO_FINGERS_GENERATION != 0x24AB78D7UL
 #error "two_fingers.h and two_fingers_inverse_dynamics.c are of different generations: generate the arm again"
 #endif
 
-int two_fingers_inverse_dynamics(
+two_fingers_status_t two_fingers_inverse_dynamics(
     const two_fingers_real_t q[TWO_FINGERS_N_JOINTS],
     const two_fingers_real_t dq[TWO_FINGERS_N_JOINTS],
     const two_fingers_real_t ddq[TWO_FINGERS_N_JOINTS],
@@ -83,7 +83,7 @@ int two_fingers_inverse_dynamics(
     enum { ZZ1R = 0, XX2R, XY2, XZ2R, YZ2, ZZ2R, MX2R, MY2, XX3R, XY3, XZ3, YZ3, ZZ3, MX3, MY3, XX4R, XY4,
         XZ4R, YZ4, ZZ4R, MX4R, MY4, XX5R, XY5, XZ5, YZ5, ZZ5, MX5, MY5, FV1, FC1, FV2, FC2, FV3, FC3, IA3,
         FV4, FC4, FV5, FC5, IA5 };
-    int status = TWO_FINGERS_STATUS_OK;
+    two_fingers_status_t status = TWO_FINGERS_STATUS_OK;
 
     if (!two_fingers_within_joints(q, TWO_FINGERS_C(1.0e8))
         || !two_fingers_within_joints(dq, TWO_FINGERS_C(1.0e10))
@@ -104,7 +104,7 @@ int two_fingers_inverse_dynamics(
     TWO_FINGERS_SINCOS(q[3], &t0, &t2);
     two_fingers_real_t t1, t3;
     TWO_FINGERS_SINCOS(q[4], &t1, &t3);
-    const two_fingers_real_t t4 = t2 * t3 - t0 * t1;
+    const two_fingers_real_t t4 = t2 * t3 - t0 * t1; /* link right_2: motion */
     const two_fingers_real_t t5 = dq[0] * t4;
     const two_fingers_real_t t6 = t5 * t5;
     const two_fingers_real_t t7 = dq[3] + dq[4];
@@ -113,69 +113,81 @@ int two_fingers_inverse_dynamics(
     const two_fingers_real_t t10 = dq[0] * t9;
     const two_fingers_real_t t11 = t10 * t5;
     const two_fingers_real_t t12 = ddq[3] + ddq[4];
-    const two_fingers_real_t t13 = t11 - t12;
+    const two_fingers_real_t t13 = t11 - t12; /* link right_2: force and moment */
     const two_fingers_real_t t14 = parameters[MY5] * t13 - parameters[MX5] * (t8 + t6);
-    const two_fingers_real_t t15 = t10 * t10;
-    const two_fingers_real_t t16 = t11 + t12;
+    const two_fingers_real_t t15 = t10 * t10; /* link right_2: motion */
+    const two_fingers_real_t t16 = t11 + t12; /* link right_2: force and moment */
     const two_fingers_real_t t17 = parameters[MX5] * t16 - parameters[MY5] * (t8 + t15);
-    const two_fingers_real_t t18 = t2 * dq[0];
-    const two_fingers_real_t t19 = t18 * t18;
+    const two_fingers_real_t t18 = t2 * dq[0]; /* link right_1: motion */
+    const two_fingers_real_t t19 = t18 * t18; /* link right_2: motion */
     const two_fingers_real_t t20 = dq[3] * dq[3];
     const two_fingers_real_t t21 = t20 + t19;
-    const two_fingers_real_t t22 = t0 * dq[0];
-    const two_fingers_real_t t23 = t22 * t18;
+    const two_fingers_real_t t22 = t0 * dq[0]; /* link right_1: motion */
+    const two_fingers_real_t t23 = t22 * t18; /* link right_2: motion */
     const two_fingers_real_t t24 = ddq[3] - t23;
+    /* link right_2: what it passes on */
     const two_fingers_real_t t25 = parameters[MX4R] * t21 + parameters[MY4] * t24 + (t1 * t17 - t3 * t14);
     const two_fingers_real_t t26 = t1 * t14 + t3 * t17;
-    const two_fingers_real_t t27 = t22 * t22;
+    const two_fingers_real_t t27 = t22 * t22; /* link right_2: motion */
     const two_fingers_real_t t28 = ddq[3] + t23;
+    /* link right_1: what it passes on */
     const two_fingers_real_t t29 = t0 * (parameters[MY4] * (t20 + t27) - parameters[MX4R] * t28 - t26);
     const two_fingers_real_t t30 = t2 * t25 - t29;
-    const two_fingers_real_t t31 = t7 * t10;
+    const two_fingers_real_t t31 = t7 * t10; /* link right_2: motion */
     const two_fingers_real_t t32 = ddq[0] * t4;
-    const two_fingers_real_t t33 = t32 - t31 - t31;
-    const two_fingers_real_t t34 = t7 * t5;
+    const two_fingers_real_t t33 = t32 - t31 - t31; /* link right_2: force and moment */
+    const two_fingers_real_t t34 = t7 * t5; /* link right_2: motion */
     const two_fingers_real_t t35 = ddq[0] * t9;
     const two_fingers_real_t t36 = t34 + t35;
-    const two_fingers_real_t t37 = t34 + t36;
+    const two_fingers_real_t t37 = t34 + t36; /* link right_2: force and moment */
     const two_fingers_real_t t38 = parameters[MX5] * t33 - parameters[MY5] * t37;
-    const two_fingers_real_t t39 = dq[3] * t22;
+    const two_fingers_real_t t39 = dq[3] * t22; /* link right_1: motion */
     const two_fingers_real_t t40 = t2 * ddq[0];
-    const two_fingers_real_t t41 = t40 - t39 - t39;
-    const two_fingers_real_t t42 = dq[3] * t18;
+    const two_fingers_real_t t41 = t40 - t39 - t39; /* link right_2: motion */
+    const two_fingers_real_t t42 = dq[3] * t18; /* link right_1: motion */
     const two_fingers_real_t t43 = t0 * ddq[0];
     const two_fingers_real_t t44 = t42 + t43;
-    const two_fingers_real_t t45 = t42 + t44;
+    const two_fingers_real_t t45 = t42 + t44; /* link right_2: motion */
+    /* link right_2: what it passes on */
     const two_fingers_real_t t46 = parameters[MX4R] * t41 - parameters[MY4] * t45 + t38;
+    /* link right_1: what it passes on */
     const two_fingers_real_t
         t47 = TWO_FINGERS_C(0.03446827135542729) * (TWO_FINGERS_C(0.17364817766693028) * t30
         + TWO_FINGERS_C(0.984807753012208) * t46)
         + TWO_FINGERS_C(0.00607768621834256) * (TWO_FINGERS_C(-0.984807753012208) * t30
         + TWO_FINGERS_C(0.17364817766693028) * t46);
+    /* link right_2: force and moment */
     const two_fingers_real_t t48 = parameters[ZZ5] * t34 + parameters[XX5R] * t36 + parameters[XY5] * t33
         + parameters[XZ5] * t16;
     const two_fingers_real_t t49 = dq[0] * dq[0];
+    /* link right_1: motion */
     const two_fingers_real_t t50 = TWO_FINGERS_C(0.03446827135542729) * t49
         + TWO_FINGERS_C(-0.00607768621834256) * ddq[0];
     const two_fingers_real_t t51 = TWO_FINGERS_C(0.00607768621834256) * t49
         + TWO_FINGERS_C(0.03446827135542729) * ddq[0];
     const two_fingers_real_t t52 = TWO_FINGERS_C(0.17364817766693028) * t50
         + TWO_FINGERS_C(-0.984807753012208) * t51;
-    const two_fingers_real_t t53 = t52 + TWO_FINGERS_C(-0.045) * t41;
+    const two_fingers_real_t t53 = t52 + TWO_FINGERS_C(-0.045) * t41; /* link right_2: motion */
+    /* link right_2: force and moment */
     const two_fingers_real_t t54 = parameters[MY5] * t53 + (parameters[YZ5] * (t6 - t8) + t48);
     const two_fingers_real_t t55 = (parameters[XX5R] - parameters[ZZ5]) * t31 + parameters[XY5] * t37
         - parameters[YZ5] * t13;
     const two_fingers_real_t t56 = parameters[MX5] * t53 - (parameters[XZ5] * (t8 - t15) + t55);
+    /* link right_1: force and moment */
     const two_fingers_real_t t57 = parameters[ZZ4R] * t42 + parameters[XX4R] * t44 + parameters[XY4] * t41
         + parameters[XZ4R] * t28;
+    /* link right_2: what it passes on */
     const two_fingers_real_t t58 = parameters[YZ4] * (t19 - t20) + t57 + parameters[MY4] * t52 + (t3 * t54
         + t1 * t56);
+    /* link right_1: force and moment */
     const two_fingers_real_t t59 = t39 * (parameters[XX4R] - parameters[ZZ4R]) + parameters[XY4] * t45
         + parameters[YZ4] * t24;
+    /* link right_2: what it passes on */
     const two_fingers_real_t t60 = parameters[XZ4R] * (t20 - t27) + t59 - parameters[MX4R] * t52 + (t1 * t54
         - t3 * t56 + TWO_FINGERS_C(0.045) * t38);
+    /* link right_1: what it passes on */
     const two_fingers_real_t t61 = parameters[ZZ1R] * ddq[0] + (t0 * t58 + t2 * t60 + t47);
-    const two_fingers_real_t t66 = t64 * t65 - t62 * t63;
+    const two_fingers_real_t t66 = t64 * t65 - t62 * t63; /* link left_2: motion */
     const two_fingers_real_t t67 = dq[0] * t66;
     const two_fingers_real_t t68 = dq[1] + dq[2];
     const two_fingers_real_t t69 = t68 * t67;
@@ -185,98 +197,112 @@ int two_fingers_inverse_dynamics(
     const two_fingers_real_t t73 = dq[0] * t70;
     const two_fingers_real_t t74 = t68 * t73;
     const two_fingers_real_t t75 = ddq[0] * t66;
-    const two_fingers_real_t t76 = t75 - t74 - t74;
-    const two_fingers_real_t t77 = t73 * t67;
+    const two_fingers_real_t t76 = t75 - t74 - t74; /* link left_2: force and moment */
+    const two_fingers_real_t t77 = t73 * t67; /* link left_2: motion */
     const two_fingers_real_t t78 = ddq[1] + ddq[2];
-    const two_fingers_real_t t79 = t77 + t78;
+    const two_fingers_real_t t79 = t77 + t78; /* link left_2: force and moment */
     const two_fingers_real_t t80 = parameters[ZZ3] * t69 + parameters[XX3R] * t72 + parameters[XY3] * t76
         + parameters[XZ3] * t79;
-    const two_fingers_real_t t81 = t67 * t67;
+    const two_fingers_real_t t81 = t67 * t67; /* link left_2: motion */
     const two_fingers_real_t t82 = t68 * t68;
-    const two_fingers_real_t t83 = t62 * dq[0];
+    const two_fingers_real_t t83 = t62 * dq[0]; /* link left_1: motion */
     const two_fingers_real_t t84 = dq[1] * t83;
     const two_fingers_real_t t85 = t64 * ddq[0];
-    const two_fingers_real_t t86 = t85 - t84 - t84;
-    const two_fingers_real_t t87 = TWO_FINGERS_C(-0.03) * ddq[0];
-    const two_fingers_real_t t88 = t87 + TWO_FINGERS_C(-0.05) * t86;
+    const two_fingers_real_t t86 = t85 - t84 - t84; /* link left_2: motion */
+    const two_fingers_real_t t87 = TWO_FINGERS_C(-0.03) * ddq[0]; /* link left_1: motion */
+    const two_fingers_real_t t88 = t87 + TWO_FINGERS_C(-0.05) * t86; /* link left_2: motion */
+    /* link left_2: force and moment */
     const two_fingers_real_t t89 = parameters[MY3] * t88 + (parameters[YZ3] * (t81 - t82) + t80);
     const two_fingers_real_t t90 = t69 + t72;
     const two_fingers_real_t t91 = t77 - t78;
     const two_fingers_real_t t92 = (parameters[XX3R] - parameters[ZZ3]) * t74 + parameters[XY3] * t90
         - parameters[YZ3] * t91;
-    const two_fingers_real_t t93 = t73 * t73;
+    const two_fingers_real_t t93 = t73 * t73; /* link left_2: motion */
+    /* link left_2: force and moment */
     const two_fingers_real_t t94 = parameters[XZ3] * (t82 - t93) + t92 - parameters[MX3] * t88;
-    const two_fingers_real_t t95 = t64 * dq[0];
+    const two_fingers_real_t t95 = t64 * dq[0]; /* link left_1: motion */
     const two_fingers_real_t t96 = dq[1] * t95;
     const two_fingers_real_t t97 = t62 * ddq[0];
     const two_fingers_real_t t98 = t96 + t97;
     const two_fingers_real_t t99 = t83 * t95;
-    const two_fingers_real_t t100 = ddq[1] + t99;
+    const two_fingers_real_t t100 = ddq[1] + t99; /* link left_2: motion */
+    /* link left_1: force and moment */
     const two_fingers_real_t t101 = parameters[ZZ2R] * t96 + parameters[XX2R] * t98 + parameters[XY2] * t86
         + parameters[XZ2R] * t100;
-    const two_fingers_real_t t102 = t95 * t95;
+    const two_fingers_real_t t102 = t95 * t95; /* link left_1: motion */
     const two_fingers_real_t t103 = dq[1] * dq[1];
+    /* link left_2: what it passes on */
     const two_fingers_real_t t104 = parameters[YZ2] * (t102 - t103) + t101 + parameters[MY2] * t87
         + (t65 * t89 - t63 * t94);
+    /* link left_2: force and moment */
     const two_fingers_real_t t105 = parameters[MX3] * t76 - parameters[MY3] * t90;
-    const two_fingers_real_t t106 = t96 + t98;
+    const two_fingers_real_t t106 = t96 + t98; /* link left_2: motion */
+    /* link left_1: force and moment */
     const two_fingers_real_t t107 = t84 * (parameters[XX2R] - parameters[ZZ2R]) + parameters[XY2] * t106
         + parameters[YZ2] * (ddq[1] - t99);
-    const two_fingers_real_t t108 = t83 * t83;
+    const two_fingers_real_t t108 = t83 * t83; /* link left_1: motion */
+    /* link left_2: what it passes on */
     const two_fingers_real_t t109 = parameters[XZ2R] * (t103 - t108) + t107 - parameters[MX2R] * t87
         + (t63 * t89 + t65 * t94 + TWO_FINGERS_C(0.05) * t105);
+    /* link left_1: what it passes on */
     const two_fingers_real_t t110 = t62 * t104 + t64 * t109 + TWO_FINGERS_C(0.03) * (parameters[MX2R] * t86
         - parameters[MY2] * t106 + t105);
-    const two_fingers_real_t t111 = two_fingers_sign(dq[0]);
+    const two_fingers_real_t t111 = two_fingers_sign(dq[0]); /* joint wrist: coulomb_friction */
     const two_fingers_real_t t112 = TWO_FINGERS_C(25.0) * (parameters[FV1] * (TWO_FINGERS_C(60.0) * dq[0])
         + parameters[FC1] * t111) + TWO_FINGERS_C(0.4166666666666667) * (t61 + t110);
     out[0] = t112;
-    const two_fingers_real_t t113 = TWO_FINGERS_C(0.03) * t49;
+    const two_fingers_real_t t113 = TWO_FINGERS_C(0.03) * t49; /* link left_1: motion */
     const two_fingers_real_t t114 = t64 * t113 + TWO_FINGERS_C(-9.81) * t62;
-    const two_fingers_real_t t115 = t114 + TWO_FINGERS_C(0.05) * (t103 + t102);
-    const two_fingers_real_t t116 = t62 * t113 + TWO_FINGERS_C(9.81) * t64;
-    const two_fingers_real_t t117 = t116 + TWO_FINGERS_C(0.05) * t100;
+    const two_fingers_real_t t115 = t114 + TWO_FINGERS_C(0.05) * (t103 + t102); /* link left_2: motion */
+    const two_fingers_real_t t116 = t62 * t113 + TWO_FINGERS_C(9.81) * t64; /* link left_1: motion */
+    const two_fingers_real_t t117 = t116 + TWO_FINGERS_C(0.05) * t100; /* link left_2: motion */
+    /* link left_2: force and moment */
     const two_fingers_real_t t118 = parameters[MX3] * (t63 * t115 + t65 * t117)
         + parameters[MY3] * (t65 * t115 - t63 * t117);
     const two_fingers_real_t t119 = parameters[ZZ3] * t78 - parameters[XX3R] * t77 + parameters[YZ3] * t75
         + parameters[XZ3] * t71;
     const two_fingers_real_t t120 = t118 + (parameters[XY3] * (t93 - t81) + t119);
+    /* link left_2: what it passes on */
     const two_fingers_real_t t121 = t63 * (parameters[MY3] * t91 - parameters[MX3] * (t82 + t81))
         + t65 * (parameters[MX3] * t79 - parameters[MY3] * (t82 + t93));
+    /* link left_1: force and moment */
     const two_fingers_real_t t122 = parameters[ZZ2R] * ddq[1] - parameters[XX2R] * t99 + parameters[YZ2] * t85
         + parameters[XZ2R] * t97;
     const two_fingers_real_t t123 = parameters[MX2R] * t116 + parameters[MY2] * t114
         + (parameters[XY2] * (t108 - t102) + t122);
-    const two_fingers_real_t t124 = two_fingers_sign(dq[1]);
+    const two_fingers_real_t t124 = two_fingers_sign(dq[1]); /* joint left_1: coulomb_friction */
     const two_fingers_real_t t125 = TWO_FINGERS_C(50.0) * (parameters[FV2] * (TWO_FINGERS_C(30.0) * dq[1])
         + parameters[FC2] * t124) + TWO_FINGERS_C(1.6666666666666667) * (t123 + (t120
         + TWO_FINGERS_C(0.05) * t121));
     out[1] = t125;
-    const two_fingers_real_t t126 = two_fingers_sign(dq[2]);
+    const two_fingers_real_t t126 = two_fingers_sign(dq[2]); /* joint left_2: coulomb_friction */
     const two_fingers_real_t t127 = parameters[FV3] * (TWO_FINGERS_C(30.0) * dq[2]) + parameters[FC3] * t126
         + parameters[IA3] * (TWO_FINGERS_C(30.0) * ddq[2]);
     out[2] = TWO_FINGERS_C(50.0) * t127 + TWO_FINGERS_C(1.6666666666666667) * t120;
+    /* link right_1: motion */
     const two_fingers_real_t t128 = TWO_FINGERS_C(0.984807753012208) * t50
         + TWO_FINGERS_C(0.17364817766693028) * t51;
     const two_fingers_real_t t129 = TWO_FINGERS_C(-9.81) * t0 + t2 * t128;
-    const two_fingers_real_t t130 = TWO_FINGERS_C(0.045) * t21 + t129;
-    const two_fingers_real_t t131 = TWO_FINGERS_C(9.81) * t2 + t0 * t128;
-    const two_fingers_real_t t132 = t131 + TWO_FINGERS_C(0.045) * t28;
+    const two_fingers_real_t t130 = TWO_FINGERS_C(0.045) * t21 + t129; /* link right_2: motion */
+    const two_fingers_real_t t131 = TWO_FINGERS_C(9.81) * t2 + t0 * t128; /* link right_1: motion */
+    const two_fingers_real_t t132 = t131 + TWO_FINGERS_C(0.045) * t28; /* link right_2: motion */
+    /* link right_2: force and moment */
     const two_fingers_real_t t133 = parameters[MX5] * (t1 * t130 + t3 * t132) + parameters[MY5] * (t3 * t130
         - t1 * t132);
     const two_fingers_real_t t134 = parameters[ZZ5] * t12 - parameters[XX5R] * t11 + parameters[YZ5] * t32
         + parameters[XZ5] * t35;
     const two_fingers_real_t t135 = t133 + (parameters[XY5] * (t15 - t6) + t134);
+    /* link right_1: force and moment */
     const two_fingers_real_t t136 = parameters[ZZ4R] * ddq[3] - parameters[XX4R] * t23 + parameters[YZ4] * t40
         + parameters[XZ4R] * t43;
     const two_fingers_real_t t137 = parameters[XY4] * (t27 - t19) + t136 + (parameters[MX4R] * t131
         + parameters[MY4] * t129);
-    const two_fingers_real_t t138 = two_fingers_sign(dq[3]);
+    const two_fingers_real_t t138 = two_fingers_sign(dq[3]); /* joint right_1: coulomb_friction */
     const two_fingers_real_t t139 = TWO_FINGERS_C(50.0) * (parameters[FV4] * (TWO_FINGERS_C(30.0) * dq[3])
         + parameters[FC4] * t138) + TWO_FINGERS_C(1.6666666666666667) * (t137 + (t135
         + TWO_FINGERS_C(0.045) * t26));
     out[3] = t139;
-    const two_fingers_real_t t140 = two_fingers_sign(dq[4]);
+    const two_fingers_real_t t140 = two_fingers_sign(dq[4]); /* joint right_2: coulomb_friction */
     const two_fingers_real_t t141 = parameters[FV5] * (TWO_FINGERS_C(30.0) * dq[4]) + parameters[FC5] * t140
         + parameters[IA5] * (TWO_FINGERS_C(30.0) * ddq[4]);
     out[4] = TWO_FINGERS_C(50.0) * t141 + TWO_FINGERS_C(1.6666666666666667) * t135;

@@ -7,16 +7,16 @@
  * Arm two_fingers, description a6b389943be5f64e.
  * SPDX-License-Identifier: 0BSD
  *
- * Operations: 1422 (815 mul, 607 add, 0 neg), 8 trig, 5 other.
+ * Operations: 1422 (815 mul, 607 add, 0 neg), 8 trig, 5 other calls (sign, select and the like).
  *
- * @param[in]   q             [5]   [rad]                joint coordinates; norm at most 10000
- * @param[in]   dq            [5]   [rad/s]              joint velocities; norm at most 100000
- * @param[in]   ddq           [5]   [rad/s^2]            joint accelerations; norm at most 1e+08
- * @param[in]   parameters    [41]                       base parameters; norm at most 1e+09
- * @param[out]  input         [5]   [A]                  inputs: motor currents, efforts where undriven
- * @param[out]  input_by_q    [25]  [(A) per (rad)]      d input / d q; 5 x 5, row-major
- * @param[out]  input_by_dq   [25]  [(A) per (rad/s)]    d input / d dq; 5 x 5, row-major
- * @param[out]  input_by_ddq  [25]  [(A) per (rad/s^2)]  d input / d ddq; 5 x 5, row-major
+ * @param[in]   q             [5]   [rad]              joint coordinates; norm at most 10000
+ * @param[in]   dq            [5]   [rad/s]            joint velocities; norm at most 100000
+ * @param[in]   ddq           [5]   [rad/s^2]          joint accelerations; norm at most 1e+08
+ * @param[in]   parameters    [41]                     base parameters; norm at most 1e+09
+ * @param[out]  input         [5]   [A]                inputs: motor currents, efforts where undriven
+ * @param[out]  input_by_q    [25]  [A per rad]        d input / d q; 5 x 5, row-major
+ * @param[out]  input_by_dq   [25]  [A per (rad/s)]    d input / d dq; 5 x 5, row-major
+ * @param[out]  input_by_ddq  [25]  [A per (rad/s^2)]  d input / d ddq; 5 x 5, row-major
  *
  * Coordinates:
  *
@@ -73,11 +73,11 @@
  */
 #include "two_fingers_private.h"
 
-#if TWO_FINGERS_GENERATION != 0x01C0F172UL
+#if TWO_FINGERS_GENERATION != 0x24AB78D7UL
 #error "two_fingers.h and two_fingers_inverse_dynamics_derivatives.c are of different generations: generate the arm again"
 #endif
 
-int two_fingers_inverse_dynamics_derivatives(
+two_fingers_status_t two_fingers_inverse_dynamics_derivatives(
     const two_fingers_real_t q[TWO_FINGERS_N_JOINTS],
     const two_fingers_real_t dq[TWO_FINGERS_N_JOINTS],
     const two_fingers_real_t ddq[TWO_FINGERS_N_JOINTS],
@@ -90,7 +90,7 @@ int two_fingers_inverse_dynamics_derivatives(
     enum { ZZ1R = 0, XX2R, XY2, XZ2R, YZ2, ZZ2R, MX2R, MY2, XX3R, XY3, XZ3, YZ3, ZZ3, MX3, MY3, XX4R, XY4,
         XZ4R, YZ4, ZZ4R, MX4R, MY4, XX5R, XY5, XZ5, YZ5, ZZ5, MX5, MY5, FV1, FC1, FV2, FC2, FV3, FC3, IA3,
         FV4, FC4, FV5, FC5, IA5 };
-    int status = TWO_FINGERS_STATUS_OK;
+    two_fingers_status_t status = TWO_FINGERS_STATUS_OK;
 
     if (!two_fingers_within_joints(q, TWO_FINGERS_C(1.0e8))
         || !two_fingers_within_joints(dq, TWO_FINGERS_C(1.0e10))
@@ -114,7 +114,7 @@ int two_fingers_inverse_dynamics_derivatives(
     TWO_FINGERS_SINCOS(q[3], &t0, &t2);
     two_fingers_real_t t1, t3;
     TWO_FINGERS_SINCOS(q[4], &t1, &t3);
-    const two_fingers_real_t t4 = t2 * t3 - t0 * t1;
+    const two_fingers_real_t t4 = t2 * t3 - t0 * t1; /* link right_2: motion */
     const two_fingers_real_t t5 = dq[0] * t4;
     const two_fingers_real_t t6 = t5 * t5;
     const two_fingers_real_t t7 = dq[3] + dq[4];
@@ -123,69 +123,81 @@ int two_fingers_inverse_dynamics_derivatives(
     const two_fingers_real_t t10 = dq[0] * t9;
     const two_fingers_real_t t11 = t10 * t5;
     const two_fingers_real_t t12 = ddq[3] + ddq[4];
-    const two_fingers_real_t t13 = t11 - t12;
+    const two_fingers_real_t t13 = t11 - t12; /* link right_2: force and moment */
     const two_fingers_real_t t14 = parameters[MY5] * t13 - parameters[MX5] * (t8 + t6);
-    const two_fingers_real_t t15 = t10 * t10;
-    const two_fingers_real_t t16 = t11 + t12;
+    const two_fingers_real_t t15 = t10 * t10; /* link right_2: motion */
+    const two_fingers_real_t t16 = t11 + t12; /* link right_2: force and moment */
     const two_fingers_real_t t17 = parameters[MY5] * (t8 + t15) - parameters[MX5] * t16;
-    const two_fingers_real_t t18 = t2 * dq[0];
-    const two_fingers_real_t t19 = t18 * t18;
+    const two_fingers_real_t t18 = t2 * dq[0]; /* link right_1: motion */
+    const two_fingers_real_t t19 = t18 * t18; /* link right_2: motion */
     const two_fingers_real_t t20 = dq[3] * dq[3];
     const two_fingers_real_t t21 = t20 + t19;
-    const two_fingers_real_t t22 = t0 * dq[0];
-    const two_fingers_real_t t23 = t22 * t18;
+    const two_fingers_real_t t22 = t0 * dq[0]; /* link right_1: motion */
+    const two_fingers_real_t t23 = t22 * t18; /* link right_2: motion */
     const two_fingers_real_t t24 = t23 - ddq[3];
+    /* link right_2: what it passes on */
     const two_fingers_real_t t25 = parameters[MX4R] * t21 - parameters[MY4] * t24 - (t3 * t14 + t1 * t17);
     const two_fingers_real_t t26 = t1 * t14 - t3 * t17;
-    const two_fingers_real_t t27 = t22 * t22;
+    const two_fingers_real_t t27 = t22 * t22; /* link right_2: motion */
     const two_fingers_real_t t28 = ddq[3] + t23;
+    /* link right_2: what it passes on */
     const two_fingers_real_t t29 = parameters[MY4] * (t20 + t27) - parameters[MX4R] * t28 - t26;
-    const two_fingers_real_t t30 = t2 * t25 - t0 * t29;
-    const two_fingers_real_t t31 = t7 * t10;
+    const two_fingers_real_t t30 = t2 * t25 - t0 * t29; /* link right_1: what it passes on */
+    const two_fingers_real_t t31 = t7 * t10; /* link right_2: motion */
     const two_fingers_real_t t32 = ddq[0] * t4;
-    const two_fingers_real_t t33 = t32 - t31 - t31;
-    const two_fingers_real_t t34 = t7 * t5;
+    const two_fingers_real_t t33 = t32 - t31 - t31; /* link right_2: force and moment */
+    const two_fingers_real_t t34 = t7 * t5; /* link right_2: motion */
     const two_fingers_real_t t35 = ddq[0] * t9;
     const two_fingers_real_t t36 = t34 + t35;
-    const two_fingers_real_t t37 = t34 + t36;
+    const two_fingers_real_t t37 = t34 + t36; /* link right_2: force and moment */
     const two_fingers_real_t t38 = parameters[MX5] * t33 - parameters[MY5] * t37;
-    const two_fingers_real_t t39 = dq[3] * t22;
+    const two_fingers_real_t t39 = dq[3] * t22; /* link right_1: motion */
     const two_fingers_real_t t40 = t2 * ddq[0];
-    const two_fingers_real_t t41 = t40 - t39 - t39;
-    const two_fingers_real_t t42 = dq[3] * t18;
+    const two_fingers_real_t t41 = t40 - t39 - t39; /* link right_2: motion */
+    const two_fingers_real_t t42 = dq[3] * t18; /* link right_1: motion */
     const two_fingers_real_t t43 = t0 * ddq[0];
     const two_fingers_real_t t44 = t42 + t43;
-    const two_fingers_real_t t45 = t42 + t44;
+    const two_fingers_real_t t45 = t42 + t44; /* link right_2: motion */
+    /* link right_2: what it passes on */
     const two_fingers_real_t t46 = parameters[MX4R] * t41 - parameters[MY4] * t45 + t38;
+    /* link right_1: what it passes on */
     const two_fingers_real_t
         t47 = TWO_FINGERS_C(0.03446827135542729) * (TWO_FINGERS_C(0.17364817766693028) * t30
         + TWO_FINGERS_C(0.984807753012208) * t46)
         + TWO_FINGERS_C(0.00607768621834256) * (TWO_FINGERS_C(-0.984807753012208) * t30
         + TWO_FINGERS_C(0.17364817766693028) * t46);
+    /* link right_2: force and moment */
     const two_fingers_real_t t48 = parameters[ZZ5] * t34 + parameters[XX5R] * t36 + parameters[XY5] * t33
         + parameters[XZ5] * t16;
     const two_fingers_real_t t49 = dq[0] * dq[0];
+    /* link right_1: motion */
     const two_fingers_real_t t50 = TWO_FINGERS_C(0.03446827135542729) * t49
         + TWO_FINGERS_C(-0.00607768621834256) * ddq[0];
     const two_fingers_real_t t51 = TWO_FINGERS_C(-0.00607768621834256) * t49
         + TWO_FINGERS_C(-0.03446827135542729) * ddq[0];
     const two_fingers_real_t t52 = TWO_FINGERS_C(0.17364817766693028) * t50
         + TWO_FINGERS_C(0.984807753012208) * t51;
-    const two_fingers_real_t t53 = t52 + TWO_FINGERS_C(-0.045) * t41;
+    const two_fingers_real_t t53 = t52 + TWO_FINGERS_C(-0.045) * t41; /* link right_2: motion */
+    /* link right_2: force and moment */
     const two_fingers_real_t t54 = parameters[MY5] * t53 - (parameters[YZ5] * (t8 - t6) - t48);
     const two_fingers_real_t t55 = (parameters[ZZ5] - parameters[XX5R]) * t31 - parameters[XY5] * t37
         + parameters[YZ5] * t13;
     const two_fingers_real_t t56 = parameters[MX5] * t53 + (parameters[XZ5] * (t15 - t8) + t55);
+    /* link right_1: force and moment */
     const two_fingers_real_t t57 = parameters[ZZ4R] * t42 + parameters[XX4R] * t44 + parameters[XY4] * t41
         + parameters[XZ4R] * t28;
+    /* link right_2: what it passes on */
     const two_fingers_real_t t58 = parameters[YZ4] * (t19 - t20) + t57 + parameters[MY4] * t52 + (t3 * t54
         + t1 * t56);
+    /* link right_1: force and moment */
     const two_fingers_real_t t59 = t39 * (parameters[ZZ4R] - parameters[XX4R]) - parameters[XY4] * t45
         + parameters[YZ4] * t24;
+    /* link right_2: what it passes on */
     const two_fingers_real_t t60 = parameters[XZ4R] * (t27 - t20) + t59 + parameters[MX4R] * t52 + (t3 * t56
         - t1 * t54 + TWO_FINGERS_C(-0.045) * t38);
+    /* link right_1: what it passes on */
     const two_fingers_real_t t61 = parameters[ZZ1R] * ddq[0] + (t0 * t58 - t2 * t60 + t47);
-    const two_fingers_real_t t66 = t64 * t65 - t62 * t63;
+    const two_fingers_real_t t66 = t64 * t65 - t62 * t63; /* link left_2: motion */
     const two_fingers_real_t t67 = dq[0] * t66;
     const two_fingers_real_t t68 = dq[1] + dq[2];
     const two_fingers_real_t t69 = t68 * t67;
@@ -195,100 +207,114 @@ int two_fingers_inverse_dynamics_derivatives(
     const two_fingers_real_t t73 = dq[0] * t70;
     const two_fingers_real_t t74 = t68 * t73;
     const two_fingers_real_t t75 = ddq[0] * t66;
-    const two_fingers_real_t t76 = t75 - t74 - t74;
-    const two_fingers_real_t t77 = t73 * t67;
+    const two_fingers_real_t t76 = t75 - t74 - t74; /* link left_2: force and moment */
+    const two_fingers_real_t t77 = t73 * t67; /* link left_2: motion */
     const two_fingers_real_t t78 = ddq[1] + ddq[2];
-    const two_fingers_real_t t79 = t77 + t78;
+    const two_fingers_real_t t79 = t77 + t78; /* link left_2: force and moment */
     const two_fingers_real_t t80 = parameters[ZZ3] * t69 + parameters[XX3R] * t72 + parameters[XY3] * t76
         + parameters[XZ3] * t79;
-    const two_fingers_real_t t81 = t67 * t67;
+    const two_fingers_real_t t81 = t67 * t67; /* link left_2: motion */
     const two_fingers_real_t t82 = t68 * t68;
-    const two_fingers_real_t t83 = t62 * dq[0];
+    const two_fingers_real_t t83 = t62 * dq[0]; /* link left_1: motion */
     const two_fingers_real_t t84 = dq[1] * t83;
     const two_fingers_real_t t85 = t64 * ddq[0];
-    const two_fingers_real_t t86 = t85 - t84 - t84;
-    const two_fingers_real_t t87 = TWO_FINGERS_C(-0.03) * ddq[0];
-    const two_fingers_real_t t88 = t87 + TWO_FINGERS_C(-0.05) * t86;
+    const two_fingers_real_t t86 = t85 - t84 - t84; /* link left_2: motion */
+    const two_fingers_real_t t87 = TWO_FINGERS_C(-0.03) * ddq[0]; /* link left_1: motion */
+    const two_fingers_real_t t88 = t87 + TWO_FINGERS_C(-0.05) * t86; /* link left_2: motion */
+    /* link left_2: force and moment */
     const two_fingers_real_t t89 = parameters[YZ3] * (t82 - t81) - t80 - parameters[MY3] * t88;
     const two_fingers_real_t t90 = t69 + t72;
     const two_fingers_real_t t91 = t77 - t78;
     const two_fingers_real_t t92 = (parameters[ZZ3] - parameters[XX3R]) * t74 - parameters[XY3] * t90
         + parameters[YZ3] * t91;
-    const two_fingers_real_t t93 = t73 * t73;
+    const two_fingers_real_t t93 = t73 * t73; /* link left_2: motion */
+    /* link left_2: force and moment */
     const two_fingers_real_t t94 = parameters[MX3] * t88 + (parameters[XZ3] * (t93 - t82) + t92);
-    const two_fingers_real_t t95 = t64 * dq[0];
+    const two_fingers_real_t t95 = t64 * dq[0]; /* link left_1: motion */
     const two_fingers_real_t t96 = dq[1] * t95;
     const two_fingers_real_t t97 = t62 * ddq[0];
     const two_fingers_real_t t98 = t96 + t97;
     const two_fingers_real_t t99 = t83 * t95;
-    const two_fingers_real_t t100 = ddq[1] + t99;
+    const two_fingers_real_t t100 = ddq[1] + t99; /* link left_2: motion */
+    /* link left_1: force and moment */
     const two_fingers_real_t t101 = parameters[ZZ2R] * t96 + parameters[XX2R] * t98 + parameters[XY2] * t86
         + parameters[XZ2R] * t100;
-    const two_fingers_real_t t102 = t95 * t95;
+    const two_fingers_real_t t102 = t95 * t95; /* link left_1: motion */
     const two_fingers_real_t t103 = dq[1] * dq[1];
+    /* link left_2: what it passes on */
     const two_fingers_real_t t104 = parameters[YZ2] * (t102 - t103) + t101 + parameters[MY2] * t87
         + (t63 * t94 - t65 * t89);
+    /* link left_2: force and moment */
     const two_fingers_real_t t105 = parameters[MX3] * t76 - parameters[MY3] * t90;
-    const two_fingers_real_t t106 = t96 + t98;
+    const two_fingers_real_t t106 = t96 + t98; /* link left_2: motion */
+    /* link left_1: force and moment */
     const two_fingers_real_t t107 = t84 * (parameters[ZZ2R] - parameters[XX2R]) - parameters[XY2] * t106
         + parameters[YZ2] * (t99 - ddq[1]);
-    const two_fingers_real_t t108 = t83 * t83;
+    const two_fingers_real_t t108 = t83 * t83; /* link left_1: motion */
+    /* link left_2: what it passes on */
     const two_fingers_real_t t109 = parameters[XZ2R] * (t108 - t103) + t107 + parameters[MX2R] * t87
         + (t63 * t89 + t65 * t94 + TWO_FINGERS_C(-0.05) * t105);
+    /* link left_1: what it passes on */
     const two_fingers_real_t t110 = t62 * t104 - t64 * t109 + TWO_FINGERS_C(0.03) * (parameters[MX2R] * t86
         - parameters[MY2] * t106 + t105);
-    const two_fingers_real_t t111 = two_fingers_sign(dq[0]);
+    const two_fingers_real_t t111 = two_fingers_sign(dq[0]); /* joint wrist: coulomb_friction */
     const two_fingers_real_t t112 = TWO_FINGERS_C(25.0) * (parameters[FV1] * (TWO_FINGERS_C(60.0) * dq[0])
         + parameters[FC1] * t111) + TWO_FINGERS_C(0.4166666666666667) * (t61 + t110);
     input[0] = t112;
-    const two_fingers_real_t t113 = TWO_FINGERS_C(0.03) * t49;
+    const two_fingers_real_t t113 = TWO_FINGERS_C(0.03) * t49; /* link left_1: motion */
     const two_fingers_real_t t114 = t64 * t113 + TWO_FINGERS_C(-9.81) * t62;
-    const two_fingers_real_t t115 = t114 + TWO_FINGERS_C(0.05) * (t103 + t102);
-    const two_fingers_real_t t116 = TWO_FINGERS_C(-9.81) * t64 - t62 * t113;
-    const two_fingers_real_t t117 = t116 + TWO_FINGERS_C(-0.05) * t100;
+    const two_fingers_real_t t115 = t114 + TWO_FINGERS_C(0.05) * (t103 + t102); /* link left_2: motion */
+    const two_fingers_real_t t116 = TWO_FINGERS_C(-9.81) * t64 - t62 * t113; /* link left_1: motion */
+    const two_fingers_real_t t117 = t116 + TWO_FINGERS_C(-0.05) * t100; /* link left_2: motion */
     const two_fingers_real_t t118 = t63 * t115 - t65 * t117;
     const two_fingers_real_t t119 = t65 * t115 + t63 * t117;
+    /* link left_2: force and moment */
     const two_fingers_real_t t120 = parameters[ZZ3] * t78 - parameters[XX3R] * t77 + parameters[YZ3] * t75
         + parameters[XZ3] * t71;
     const two_fingers_real_t t121 = parameters[MX3] * t118 + parameters[MY3] * t119 + (parameters[XY3] * (t93
         - t81) + t120);
     const two_fingers_real_t t122 = parameters[MY3] * t91 - parameters[MX3] * (t82 + t81);
     const two_fingers_real_t t123 = parameters[MY3] * (t82 + t93) - parameters[MX3] * t79;
+    /* link left_1: force and moment */
     const two_fingers_real_t t124 = parameters[ZZ2R] * ddq[1] - parameters[XX2R] * t99 + parameters[YZ2] * t85
         + parameters[XZ2R] * t97;
     const two_fingers_real_t t125 = parameters[MY2] * t114 - parameters[MX2R] * t116
         + (parameters[XY2] * (t108 - t102) + t124);
+    /* link left_2: what it passes on */
     const two_fingers_real_t t126 = t125 + (t121 + TWO_FINGERS_C(0.05) * (t63 * t122 - t65 * t123));
-    const two_fingers_real_t t127 = two_fingers_sign(dq[1]);
+    const two_fingers_real_t t127 = two_fingers_sign(dq[1]); /* joint left_1: coulomb_friction */
     const two_fingers_real_t t128 = TWO_FINGERS_C(50.0) * (parameters[FV2] * (TWO_FINGERS_C(30.0) * dq[1])
         + parameters[FC2] * t127) + TWO_FINGERS_C(1.6666666666666667) * t126;
     input[1] = t128;
-    const two_fingers_real_t t129 = two_fingers_sign(dq[2]);
+    const two_fingers_real_t t129 = two_fingers_sign(dq[2]); /* joint left_2: coulomb_friction */
     const two_fingers_real_t t130 = parameters[FV3] * (TWO_FINGERS_C(30.0) * dq[2]) + parameters[FC3] * t129
         + parameters[IA3] * (TWO_FINGERS_C(30.0) * ddq[2]);
     input[2] = TWO_FINGERS_C(50.0) * t130 + TWO_FINGERS_C(1.6666666666666667) * t121;
+    /* link right_1: motion */
     const two_fingers_real_t t131 = TWO_FINGERS_C(0.984807753012208) * t50
         + TWO_FINGERS_C(-0.17364817766693028) * t51;
     const two_fingers_real_t t132 = TWO_FINGERS_C(-9.81) * t0 + t2 * t131;
-    const two_fingers_real_t t133 = TWO_FINGERS_C(0.045) * t21 + t132;
-    const two_fingers_real_t t134 = TWO_FINGERS_C(-9.81) * t2 - t0 * t131;
-    const two_fingers_real_t t135 = t134 + TWO_FINGERS_C(-0.045) * t28;
+    const two_fingers_real_t t133 = TWO_FINGERS_C(0.045) * t21 + t132; /* link right_2: motion */
+    const two_fingers_real_t t134 = TWO_FINGERS_C(-9.81) * t2 - t0 * t131; /* link right_1: motion */
+    const two_fingers_real_t t135 = t134 + TWO_FINGERS_C(-0.045) * t28; /* link right_2: motion */
     const two_fingers_real_t t136 = t1 * t133 - t3 * t135;
     const two_fingers_real_t t137 = t3 * t133 + t1 * t135;
+    /* link right_2: force and moment */
     const two_fingers_real_t t138 = parameters[ZZ5] * t12 - parameters[XX5R] * t11 + parameters[YZ5] * t32
         + parameters[XZ5] * t35;
     const two_fingers_real_t t139 = parameters[MX5] * t136 + parameters[MY5] * t137 + (parameters[XY5] * (t15
         - t6) + t138);
+    /* link right_1: force and moment */
     const two_fingers_real_t t140 = parameters[ZZ4R] * ddq[3] - parameters[XX4R] * t23 + parameters[YZ4] * t40
         + parameters[XZ4R] * t43;
     const two_fingers_real_t t141 = parameters[XY4] * (t27 - t19) + t140 + (parameters[MY4] * t132
         - parameters[MX4R] * t134);
-    const two_fingers_real_t t142 = two_fingers_sign(dq[3]);
+    const two_fingers_real_t t142 = two_fingers_sign(dq[3]); /* joint right_1: coulomb_friction */
     const two_fingers_real_t t143 = TWO_FINGERS_C(50.0) * (parameters[FV4] * (TWO_FINGERS_C(30.0) * dq[3])
         + parameters[FC4] * t142) + TWO_FINGERS_C(1.6666666666666667) * (t141 + (t139
         + TWO_FINGERS_C(0.045) * t26));
     input[3] = t143;
-    const two_fingers_real_t t144 = two_fingers_sign(dq[4]);
+    const two_fingers_real_t t144 = two_fingers_sign(dq[4]); /* joint right_2: coulomb_friction */
     const two_fingers_real_t t145 = parameters[FV5] * (TWO_FINGERS_C(30.0) * dq[4]) + parameters[FC5] * t144
         + parameters[IA5] * (TWO_FINGERS_C(30.0) * ddq[4]);
     input[4] = TWO_FINGERS_C(50.0) * t145 + TWO_FINGERS_C(1.6666666666666667) * t139;
@@ -301,15 +327,17 @@ int two_fingers_inverse_dynamics_derivatives(
     const two_fingers_real_t t152 = t150 - t151;
     const two_fingers_real_t t153 = parameters[YZ5] * t10;
     const two_fingers_real_t t154 = t151 - t153;
+    /* link right_2: inertia, momentum beyond */
     const two_fingers_real_t t155 = t3 * (t152 - t154) - t1 * (t148 + t149);
     const two_fingers_real_t t156 = t3 * t155;
     const two_fingers_real_t t157 = parameters[MY5] * t7;
     const two_fingers_real_t t158 = parameters[MX5] * t7;
     const two_fingers_real_t t159 = t3 * t157 + t1 * t158;
     const two_fingers_real_t t160 = TWO_FINGERS_C(0.045) * t159;
+    /* link right_2: column of the mass matrix */
     const two_fingers_real_t t161 = t3 * parameters[MY5] + t1 * parameters[MX5];
-    const two_fingers_real_t t162 = TWO_FINGERS_C(0.045) * dq[3];
-    const two_fingers_real_t t163 = t161 * t162;
+    const two_fingers_real_t t162 = TWO_FINGERS_C(0.045) * dq[3]; /* link right_2: velocity of its origin */
+    const two_fingers_real_t t163 = t161 * t162; /* link right_2: inertia, momentum beyond */
     const two_fingers_real_t t164 = t163 - t160;
     const two_fingers_real_t t165 = parameters[XZ4R] * t18;
     const two_fingers_real_t t166 = parameters[XY4] * dq[3];
@@ -320,25 +348,33 @@ int two_fingers_inverse_dynamics_derivatives(
     const two_fingers_real_t t171 = TWO_FINGERS_C(0.5) * (parameters[XX4R] + parameters[ZZ4R]);
     const two_fingers_real_t t172 = parameters[YZ4] * t18 + dq[3] * t171 + (t149 + t170);
     const two_fingers_real_t t173 = t1 * t157 - t3 * t158;
+    /* link right_2: column of the mass matrix */
     const two_fingers_real_t t174 = t1 * parameters[MY5] - t3 * parameters[MX5];
     const two_fingers_real_t t175 = parameters[XX4R] - t171;
+    /* link right_2: inertia, momentum beyond */
     const two_fingers_real_t t176 = dq[3] * t175 - parameters[XZ4R] * t22 + (t148 + t170
         + (TWO_FINGERS_C(0.045) * t173 + t174 * t162));
+    /* link right_1: inertia, momentum beyond */
     const two_fingers_real_t t177 = t2 * (t2 * (t169 - t167) + t0 * (t172 + t176));
+    /* link right_2: inertia, momentum beyond */
     const two_fingers_real_t t178 = parameters[MY4] * dq[3] + t159;
     const two_fingers_real_t t179 = t173 - parameters[MX4R] * dq[3];
+    /* link right_1: inertia, momentum beyond */
     const two_fingers_real_t t180 = TWO_FINGERS_C(0.07) * (t0 * t178 + t2 * t179);
     const two_fingers_real_t t181 = t0 * t179 - t2 * t178;
     const two_fingers_real_t t182 = parameters[MX5] * t5 - parameters[MY5] * t10;
+    /* link right_2: inertia, momentum beyond */
     const two_fingers_real_t t183 = parameters[MY4] * t22 - parameters[MX4R] * t18 - t182;
+    /* link right_1: inertia, momentum beyond */
     const two_fingers_real_t
         t184 = TWO_FINGERS_C(0.03446827135542729) * (TWO_FINGERS_C(0.984807753012208) * t181
         + TWO_FINGERS_C(-0.17364817766693028) * t183)
         + TWO_FINGERS_C(0.00607768621834256) * (TWO_FINGERS_C(0.17364817766693028) * t181
         + TWO_FINGERS_C(0.984807753012208) * t183);
-    const two_fingers_real_t t185 = parameters[MY4] + t161;
+    const two_fingers_real_t t185 = parameters[MY4] + t161; /* link right_2: inertia of it and all beyond */
     const two_fingers_real_t t186 = t174 - parameters[MX4R];
-    const two_fingers_real_t t187 = t0 * t185 + t2 * t186;
+    const two_fingers_real_t t187 = t0 * t185 + t2 * t186; /* link right_1: column of the mass matrix */
+    /* link right_1: inertia, momentum beyond */
     const two_fingers_real_t
         t188 = TWO_FINGERS_C(0.17364817766693028) * t187 * (TWO_FINGERS_C(0.03446827135542729) * dq[0])
         - TWO_FINGERS_C(-0.984807753012208) * t187 * (TWO_FINGERS_C(-0.00607768621834256) * dq[0]);
@@ -351,15 +387,17 @@ int two_fingers_inverse_dynamics_derivatives(
     const two_fingers_real_t t195 = t193 - t194;
     const two_fingers_real_t t196 = parameters[YZ3] * t73;
     const two_fingers_real_t t197 = t194 - t196;
+    /* link left_2: inertia, momentum beyond */
     const two_fingers_real_t t198 = t65 * (t195 - t197) - t63 * (t191 + t192);
     const two_fingers_real_t t199 = t65 * t198;
     const two_fingers_real_t t200 = parameters[MY3] * t68;
     const two_fingers_real_t t201 = parameters[MX3] * t68;
     const two_fingers_real_t t202 = t65 * t200 + t63 * t201;
     const two_fingers_real_t t203 = TWO_FINGERS_C(0.05) * t202;
+    /* link left_2: column of the mass matrix */
     const two_fingers_real_t t204 = t65 * parameters[MY3] + t63 * parameters[MX3];
-    const two_fingers_real_t t205 = TWO_FINGERS_C(0.05) * dq[1];
-    const two_fingers_real_t t206 = t204 * t205;
+    const two_fingers_real_t t205 = TWO_FINGERS_C(0.05) * dq[1]; /* link left_2: velocity of its origin */
+    const two_fingers_real_t t206 = t204 * t205; /* link left_2: inertia, momentum beyond */
     const two_fingers_real_t t207 = t206 - t203;
     const two_fingers_real_t t208 = parameters[XZ2R] * t95;
     const two_fingers_real_t t209 = parameters[XY2] * dq[1];
@@ -370,13 +408,18 @@ int two_fingers_inverse_dynamics_derivatives(
     const two_fingers_real_t t214 = TWO_FINGERS_C(0.5) * (parameters[XX2R] + parameters[ZZ2R]);
     const two_fingers_real_t t215 = parameters[YZ2] * t95 + dq[1] * t214 + (t192 + t213);
     const two_fingers_real_t t216 = t63 * t200 - t65 * t201;
+    /* link left_2: column of the mass matrix */
     const two_fingers_real_t t217 = t65 * parameters[MX3] - t63 * parameters[MY3];
     const two_fingers_real_t t218 = parameters[XX2R] - t214;
+    /* link left_2: inertia, momentum beyond */
     const two_fingers_real_t t219 = dq[1] * t218 - parameters[XZ2R] * t83 + (t191 + t213
         + (TWO_FINGERS_C(0.05) * t216 - t217 * t205));
+    /* link left_1: inertia, momentum beyond */
     const two_fingers_real_t t220 = t64 * (t64 * (t212 - t210) + t62 * (t215 + t219));
+    /* link left_2: inertia, momentum beyond */
     const two_fingers_real_t t221 = parameters[MY2] * dq[1] + t202;
     const two_fingers_real_t t222 = t216 - parameters[MX2R] * dq[1];
+    /* link left_1: inertia, momentum beyond */
     const two_fingers_real_t t223 = TWO_FINGERS_C(0.08) * (t62 * t221 + t64 * t222);
     const two_fingers_real_t t224 = TWO_FINGERS_C(0.03) * (t62 * t222 - t64 * t221) - t223 + (t210 + t220
         + t223);
@@ -385,18 +428,22 @@ int two_fingers_inverse_dynamics_derivatives(
     const two_fingers_real_t t226 = parameters[XY3] * t73 - t67 * t190;
     const two_fingers_real_t t227 = t73 * t189 + parameters[XY3] * t67;
     const two_fingers_real_t t228 = parameters[MX3] * t67 - parameters[MY3] * t73;
-    const two_fingers_real_t t229 = TWO_FINGERS_C(-0.05) * t95;
+    const two_fingers_real_t t229 = TWO_FINGERS_C(-0.05) * t95; /* link left_2: velocity of its origin */
+    /* link left_2: inertia, momentum beyond */
     const two_fingers_real_t t230 = t65 * t226 + t63 * t227 + (TWO_FINGERS_C(0.05) * t228 - t217 * t229);
+    /* link left_1: derivatives */
     const two_fingers_real_t t231 = TWO_FINGERS_C(2.0) * (parameters[XY2] * t83 - t95 * t218 + t230);
+    /* link left_2: inertia, momentum beyond */
     const two_fingers_real_t t232 = parameters[XY2] * t95 + t83 * t214 - (t63 * t226 - t65 * t227
         - t204 * t229);
-    const two_fingers_real_t t233 = TWO_FINGERS_C(2.0) * t232;
-    const two_fingers_real_t t234 = parameters[MY2] + t204;
+    const two_fingers_real_t t233 = TWO_FINGERS_C(2.0) * t232; /* link left_1: derivatives */
+    const two_fingers_real_t t234 = parameters[MY2] + t204; /* link left_2: inertia of it and all beyond */
     const two_fingers_real_t t235 = parameters[MX2R] + t217;
     const two_fingers_real_t t236 = TWO_FINGERS_C(0.06) * dq[0];
+    /* link left_1: derivatives */
     const two_fingers_real_t t237 = t62 * t231 - t64 * t233 + (t64 * t234 + t62 * t235) * t236;
     input_by_dq[5] = TWO_FINGERS_C(1.6666666666666667) * t237;
-    const two_fingers_real_t t238 = TWO_FINGERS_C(2.0) * t226;
+    const two_fingers_real_t t238 = TWO_FINGERS_C(2.0) * t226; /* link left_2: derivatives */
     const two_fingers_real_t t239 = TWO_FINGERS_C(2.0) * t227;
     const two_fingers_real_t t240 = TWO_FINGERS_C(-0.1) * t95;
     const two_fingers_real_t t241 = t65 * t238 + t63 * t239 - t217 * t240;
@@ -405,27 +452,33 @@ int two_fingers_inverse_dynamics_derivatives(
     input_by_dq[10] = TWO_FINGERS_C(1.6666666666666667) * t243;
     const two_fingers_real_t t244 = parameters[XY5] * t10 - t5 * t147;
     const two_fingers_real_t t245 = t10 * t146 + parameters[XY5] * t5;
-    const two_fingers_real_t t246 = TWO_FINGERS_C(-0.045) * t18;
+    const two_fingers_real_t t246 = TWO_FINGERS_C(-0.045) * t18; /* link right_2: velocity of its origin */
+    /* link right_2: inertia, momentum beyond */
     const two_fingers_real_t t247 = t3 * t244 + t1 * t245 + (TWO_FINGERS_C(0.045) * t182 + t174 * t246);
+    /* link right_1: derivatives */
     const two_fingers_real_t t248 = TWO_FINGERS_C(2.0) * (parameters[XY4] * t22 - t18 * t175 + t247);
+    /* link right_2: inertia, momentum beyond */
     const two_fingers_real_t t249 = parameters[XY4] * t18 + t22 * t171 - (t1 * t244 - t3 * t245
         - t161 * t246);
-    const two_fingers_real_t t250 = TWO_FINGERS_C(2.0) * t249;
-    const two_fingers_real_t t251 = t2 * t185 - t0 * t186;
+    const two_fingers_real_t t250 = TWO_FINGERS_C(2.0) * t249; /* link right_1: derivatives */
+    const two_fingers_real_t t251 = t2 * t185 - t0 * t186; /* link right_1: column of the mass matrix */
     const two_fingers_real_t t252 = TWO_FINGERS_C(0.01215537243668512) * dq[0];
     const two_fingers_real_t t253 = TWO_FINGERS_C(0.06893654271085457) * dq[0];
+    /* link right_1: derivatives */
     const two_fingers_real_t t254 = t0 * t248 - t2 * t250 + (TWO_FINGERS_C(0.17364817766693028) * t251 * t252
         + TWO_FINGERS_C(0.984807753012208) * t251 * t253);
     input_by_dq[15] = TWO_FINGERS_C(1.6666666666666667) * t254;
-    const two_fingers_real_t t255 = TWO_FINGERS_C(2.0) * t244;
+    const two_fingers_real_t t255 = TWO_FINGERS_C(2.0) * t244; /* link right_2: derivatives */
     const two_fingers_real_t t256 = TWO_FINGERS_C(2.0) * t245;
     const two_fingers_real_t t257 = TWO_FINGERS_C(-0.09) * t18;
     const two_fingers_real_t t258 = t3 * t255 + t1 * t256 + t174 * t257;
     const two_fingers_real_t t259 = t1 * t255 - t3 * t256 - t161 * t257;
-    const two_fingers_real_t t260 = t2 * t161 - t0 * t174;
+    const two_fingers_real_t t260 = t2 * t161 - t0 * t174; /* link right_2: column of the mass matrix */
+    /* link right_2: derivatives */
     const two_fingers_real_t t261 = t0 * t258 + t2 * t259 + (TWO_FINGERS_C(0.17364817766693028) * t260 * t252
         + TWO_FINGERS_C(0.984807753012208) * t260 * t253);
     input_by_dq[20] = TWO_FINGERS_C(1.6666666666666667) * t261;
+    /* link right_2: inertia of it and all beyond */
     const two_fingers_real_t t262 = t3 * parameters[XX5R] + parameters[XY5] * (TWO_FINGERS_C(-2.0) * t1);
     const two_fingers_real_t t263 = t3 * t262;
     const two_fingers_real_t t264 = TWO_FINGERS_C(0.09) * t174;
@@ -433,7 +486,9 @@ int two_fingers_inverse_dynamics_derivatives(
     const two_fingers_real_t t266 = parameters[XX4R] + t263;
     const two_fingers_real_t t267 = parameters[XY4] + (parameters[XY5] + t1 * t262
         + TWO_FINGERS_C(-0.045) * t161);
+    /* link right_1: inertia of it and all beyond */
     const two_fingers_real_t t268 = t2 * (t2 * (t265 - t266) + t267 * (TWO_FINGERS_C(2.0) * t0));
+    /* link left_2: inertia of it and all beyond */
     const two_fingers_real_t t269 = t65 * parameters[XX3R] + parameters[XY3] * (TWO_FINGERS_C(-2.0) * t63);
     const two_fingers_real_t t270 = t65 * t269;
     const two_fingers_real_t t271 = TWO_FINGERS_C(-0.1) * t217;
@@ -441,48 +496,64 @@ int two_fingers_inverse_dynamics_derivatives(
     const two_fingers_real_t t273 = parameters[XX2R] + t270;
     const two_fingers_real_t t274 = parameters[XY2] + (parameters[XY3] + t63 * t269
         + TWO_FINGERS_C(-0.05) * t204);
+    /* link left_1: inertia of it and all beyond */
     const two_fingers_real_t t275 = t64 * (t64 * (t272 - t273) + t274 * (TWO_FINGERS_C(2.0) * t62));
     const two_fingers_real_t t276 = t273 + t275 + TWO_FINGERS_C(0.06) * (t64 * t235 - t62 * t234);
     const two_fingers_real_t t277 = TWO_FINGERS_C(0.4166666666666667) * (parameters[ZZ1R] + (t266 + t268
         + TWO_FINGERS_C(-0.06999999999999999) * t187) + t276);
     input_by_ddq[0] = t277;
+    /* link left_2: column of the mass matrix */
     const two_fingers_real_t t278 = t65 * parameters[XZ3] - t63 * parameters[YZ3];
-    const two_fingers_real_t t279 = parameters[XZ2R] + t278;
+    const two_fingers_real_t t279 = parameters[XZ2R] + t278; /* link left_2: inertia of it and all beyond */
+    /* link left_2: column of the mass matrix */
     const two_fingers_real_t t280 = t63 * parameters[XZ3] + t65 * parameters[YZ3];
-    const two_fingers_real_t t281 = parameters[YZ2] + t280;
-    const two_fingers_real_t t282 = t62 * t279 + t64 * t281;
+    const two_fingers_real_t t281 = parameters[YZ2] + t280; /* link left_2: inertia of it and all beyond */
+    const two_fingers_real_t t282 = t62 * t279 + t64 * t281; /* link left_1: column of the mass matrix */
     input_by_ddq[5] = TWO_FINGERS_C(1.6666666666666667) * t282;
-    const two_fingers_real_t t283 = t62 * t278 + t64 * t280;
+    const two_fingers_real_t t283 = t62 * t278 + t64 * t280; /* link left_2: column of the mass matrix */
     input_by_ddq[10] = TWO_FINGERS_C(1.6666666666666667) * t283;
+    /* link right_2: column of the mass matrix */
     const two_fingers_real_t t284 = t3 * parameters[XZ5] - t1 * parameters[YZ5];
-    const two_fingers_real_t t285 = parameters[XZ4R] + t284;
+    const two_fingers_real_t t285 = parameters[XZ4R] + t284; /* link right_2: inertia of it and all beyond */
+    /* link right_2: column of the mass matrix */
     const two_fingers_real_t t286 = t1 * parameters[XZ5] + t3 * parameters[YZ5];
-    const two_fingers_real_t t287 = parameters[YZ4] + t286;
+    const two_fingers_real_t t287 = parameters[YZ4] + t286; /* link right_2: inertia of it and all beyond */
+    /* link right_1: column of the mass matrix */
     const two_fingers_real_t t288 = t0 * t285 + t2 * t287 + TWO_FINGERS_C(8.673617379884035e-19) * t251;
     input_by_ddq[15] = TWO_FINGERS_C(1.6666666666666667) * t288;
+    /* link right_2: column of the mass matrix */
     const two_fingers_real_t t289 = t0 * t284 + t2 * t286 + TWO_FINGERS_C(8.673617379884035e-19) * t260;
     input_by_ddq[20] = TWO_FINGERS_C(1.6666666666666667) * t289;
     const two_fingers_real_t t290 = TWO_FINGERS_C(2.0) * t95;
     const two_fingers_real_t t291 = TWO_FINGERS_C(-2.0) * t83;
-    const two_fingers_real_t t292 = t108 + t102;
+    const two_fingers_real_t t292 = t108 + t102; /* link left_2: motion */
+    /* link left_1: derivatives */
     const two_fingers_real_t t293 = t290 * t210 + t291 * t215 + (t273 * t85 - t274 * t97 - t279 * t292);
     const two_fingers_real_t t294 = t290 * t219 + t291 * t212 + (t274 * t85 - t272 * t97 - t281 * t292);
     const two_fingers_real_t t295 = t290 * t222 - t291 * t221 - (t234 * t85 + t235 * t97);
     const two_fingers_real_t t296 = t62 * (t109 + t293) + t64 * (t104 + t294) + TWO_FINGERS_C(0.03) * t295;
     input_by_q[1] = TWO_FINGERS_C(0.4166666666666667) * t296;
+    /* link left_2: inertia of it and all beyond */
     const two_fingers_real_t t297 = parameters[ZZ2R] + (parameters[ZZ3] - t271);
+    /* link left_1: derivatives */
     const two_fingers_real_t t298 = t279 * t85 - t281 * t97 - t297 * t292 + (t95 * t231 + t83 * t233);
     input_by_q[6] = TWO_FINGERS_C(1.6666666666666667) * (t235 * t114 + t234 * t116 + t298);
+    /* link left_2: column of the mass matrix */
     const two_fingers_real_t t299 = parameters[ZZ3] - TWO_FINGERS_C(-0.05) * t217;
+    /* link left_2: derivatives */
     const two_fingers_real_t t300 = t95 * t241 - t83 * t242 + (t278 * t85 - t280 * t97 - t299 * t292);
     input_by_q[11] = TWO_FINGERS_C(1.6666666666666667) * (t300 + (t204 * t116 + t217 * t114));
     const two_fingers_real_t t301 = t189 - parameters[ZZ3];
     const two_fingers_real_t t302 = parameters[YZ3] * t68 + t67 * t301;
     const two_fingers_real_t t303 = parameters[XZ3] * t68 + t73 * t301;
     const two_fingers_real_t t304 = parameters[ZZ2R] - t214;
+    /* link left_2: inertia, momentum beyond */
     const two_fingers_real_t t305 = t95 * t304 - parameters[YZ2] * dq[1] - (t65 * t302 + t63 * t303);
+    /* link left_1: derivatives */
     const two_fingers_real_t t306 = t62 * (TWO_FINGERS_C(2.0) * t305 + (t273 * t290 + t274 * t291));
+    /* link left_2: inertia, momentum beyond */
     const two_fingers_real_t t307 = parameters[XZ2R] * dq[1] - t83 * t304 + (t65 * t303 - t63 * t302);
+    /* link left_1: derivatives */
     const two_fingers_real_t t308 = t64 * (TWO_FINGERS_C(2.0) * t307 + (t274 * t290 + t272 * t291));
     const two_fingers_real_t t309 = t306 + t308 + TWO_FINGERS_C(0.03) * (t235 * t291 - t234 * t290);
     input_by_dq[1] = TWO_FINGERS_C(0.4166666666666667) * t309;
@@ -490,7 +561,7 @@ int two_fingers_inverse_dynamics_derivatives(
     const two_fingers_real_t t311 = TWO_FINGERS_C(2.0) * (t211 - t208 + (t310 + t207))
         + TWO_FINGERS_C(2.0) * (t279 * t95 - t281 * t83);
     input_by_dq[6] = TWO_FINGERS_C(1.5e3) * parameters[FV2] + TWO_FINGERS_C(1.6666666666666667) * t311;
-    const two_fingers_real_t t312 = TWO_FINGERS_C(2.0) * t310;
+    const two_fingers_real_t t312 = TWO_FINGERS_C(2.0) * t310; /* link left_2: derivatives */
     const two_fingers_real_t t313 = t312 + t204 * (TWO_FINGERS_C(0.1) * dq[1])
         + TWO_FINGERS_C(2.0) * (t278 * t95 - t280 * t83);
     input_by_dq[11] = TWO_FINGERS_C(1.6666666666666667) * t313;
@@ -500,7 +571,8 @@ int two_fingers_inverse_dynamics_derivatives(
     input_by_ddq[11] = t314;
     const two_fingers_real_t t315 = TWO_FINGERS_C(-2.0) * t67;
     const two_fingers_real_t t316 = TWO_FINGERS_C(-2.0) * t73;
-    const two_fingers_real_t t317 = t93 + t81;
+    const two_fingers_real_t t317 = t93 + t81; /* link left_2: force and moment */
+    /* link left_2: derivatives */
     const two_fingers_real_t t318 = t316 * t192 - t315 * t195 + (parameters[XX3R] * t75
         - parameters[XY3] * t71 - parameters[XZ3] * t317);
     const two_fingers_real_t t319 = t94 + t318;
@@ -540,7 +612,8 @@ int two_fingers_inverse_dynamics_derivatives(
         + TWO_FINGERS_C(1.6666666666666667) * parameters[ZZ3];
     const two_fingers_real_t t337 = TWO_FINGERS_C(2.0) * t18;
     const two_fingers_real_t t338 = TWO_FINGERS_C(-2.0) * t22;
-    const two_fingers_real_t t339 = t27 + t19;
+    const two_fingers_real_t t339 = t27 + t19; /* link right_2: motion */
+    /* link right_1: derivatives */
     const two_fingers_real_t t340 = t337 * t167 + t338 * t172 + (t266 * t40 - t267 * t43 - t285 * t339);
     const two_fingers_real_t t341 = t337 * t176 + t338 * t169 + (t267 * t40 - t265 * t43 - t287 * t339);
     const two_fingers_real_t t342 = t2 * (t29 + (t338 * t183 + t185 * t339)) + t0 * (t25 + (t337 * t183
@@ -553,19 +626,27 @@ int two_fingers_inverse_dynamics_derivatives(
         + TWO_FINGERS_C(0.17364817766693028) * t343);
     const two_fingers_real_t t345 = t0 * (t60 + t340) + t2 * (t58 + t341) + t344;
     input_by_q[3] = TWO_FINGERS_C(0.4166666666666667) * t345;
+    /* link right_2: inertia of it and all beyond */
     const two_fingers_real_t t346 = parameters[ZZ4R] + (parameters[ZZ5] - t264);
+    /* link right_1: derivatives */
     const two_fingers_real_t t347 = t285 * t40 - t287 * t43 - t346 * t339 + (t18 * t248 + t22 * t250);
     input_by_q[18] = TWO_FINGERS_C(1.6666666666666667) * (t185 * t134 - t186 * t132 + t347);
+    /* link right_2: column of the mass matrix */
     const two_fingers_real_t t348 = parameters[ZZ5] - TWO_FINGERS_C(0.045) * t174;
+    /* link right_2: derivatives */
     const two_fingers_real_t t349 = t18 * t258 - t22 * t259 + (t284 * t40 - t286 * t43 - t348 * t339);
     input_by_q[23] = TWO_FINGERS_C(1.6666666666666667) * (t349 + (t161 * t134 - t174 * t132));
     const two_fingers_real_t t350 = t146 - parameters[ZZ5];
     const two_fingers_real_t t351 = parameters[YZ5] * t7 + t5 * t350;
     const two_fingers_real_t t352 = parameters[XZ5] * t7 + t10 * t350;
     const two_fingers_real_t t353 = parameters[ZZ4R] - t171;
+    /* link right_2: inertia, momentum beyond */
     const two_fingers_real_t t354 = t18 * t353 - parameters[YZ4] * dq[3] - (t3 * t351 + t1 * t352);
+    /* link right_1: derivatives */
     const two_fingers_real_t t355 = t0 * (TWO_FINGERS_C(2.0) * t354 + (t266 * t337 + t267 * t338));
+    /* link right_2: inertia, momentum beyond */
     const two_fingers_real_t t356 = parameters[XZ4R] * dq[3] - t22 * t353 + (t3 * t352 - t1 * t351);
+    /* link right_1: derivatives */
     const two_fingers_real_t t357 = t2 * (TWO_FINGERS_C(2.0) * t356 + (t267 * t337 + t265 * t338));
     const two_fingers_real_t t358 = t2 * (TWO_FINGERS_C(-2.0) * t179) - t0 * (TWO_FINGERS_C(2.0) * t178);
     const two_fingers_real_t t359 = t185 * t337 + t186 * t338;
@@ -579,7 +660,7 @@ int two_fingers_inverse_dynamics_derivatives(
     const two_fingers_real_t t362 = TWO_FINGERS_C(2.0) * (t168 - t165 + (t361 + t164))
         + TWO_FINGERS_C(2.0) * (t285 * t18 - t287 * t22);
     input_by_dq[18] = TWO_FINGERS_C(1.5e3) * parameters[FV4] + TWO_FINGERS_C(1.6666666666666667) * t362;
-    const two_fingers_real_t t363 = TWO_FINGERS_C(2.0) * t361;
+    const two_fingers_real_t t363 = TWO_FINGERS_C(2.0) * t361; /* link right_2: derivatives */
     const two_fingers_real_t t364 = t363 + t161 * (TWO_FINGERS_C(0.09) * dq[3])
         + TWO_FINGERS_C(2.0) * (t284 * t18 - t286 * t22);
     input_by_dq[23] = TWO_FINGERS_C(1.6666666666666667) * t364;
@@ -587,8 +668,9 @@ int two_fingers_inverse_dynamics_derivatives(
     input_by_ddq[18] = TWO_FINGERS_C(1.6666666666666667) * t346;
     const two_fingers_real_t t365 = TWO_FINGERS_C(1.6666666666666667) * t348;
     input_by_ddq[23] = t365;
-    const two_fingers_real_t t366 = t15 + t6;
+    const two_fingers_real_t t366 = t15 + t6; /* link right_2: force and moment */
     const two_fingers_real_t t367 = TWO_FINGERS_C(-2.0) * t10;
+    /* link right_2: derivatives */
     const two_fingers_real_t t368 = t17 + (parameters[MY5] * t366 - t367 * t182);
     const two_fingers_real_t t369 = TWO_FINGERS_C(-2.0) * t5;
     const two_fingers_real_t t370 = t14 - (t369 * t182 + parameters[MX5] * t366);

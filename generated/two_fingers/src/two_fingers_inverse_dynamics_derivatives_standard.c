@@ -7,16 +7,16 @@
  * Arm two_fingers, description a6b389943be5f64e.
  * SPDX-License-Identifier: 0BSD
  *
- * Operations: 1637 (906 mul, 731 add, 0 neg), 8 trig, 5 other.
+ * Operations: 1637 (906 mul, 731 add, 0 neg), 8 trig, 5 other calls (sign, select and the like).
  *
- * @param[in]   q             [5]   [rad]                joint coordinates; norm at most 10000
- * @param[in]   dq            [5]   [rad/s]              joint velocities; norm at most 100000
- * @param[in]   ddq           [5]   [rad/s^2]            joint accelerations; norm at most 1e+08
- * @param[in]   parameters    [65]                       standard parameters; norm at most 1e+09
- * @param[out]  input         [5]   [A]                  inputs: motor currents, efforts where undriven
- * @param[out]  input_by_q    [25]  [(A) per (rad)]      d input / d q; 5 x 5, row-major
- * @param[out]  input_by_dq   [25]  [(A) per (rad/s)]    d input / d dq; 5 x 5, row-major
- * @param[out]  input_by_ddq  [25]  [(A) per (rad/s^2)]  d input / d ddq; 5 x 5, row-major
+ * @param[in]   q             [5]   [rad]              joint coordinates; norm at most 10000
+ * @param[in]   dq            [5]   [rad/s]            joint velocities; norm at most 100000
+ * @param[in]   ddq           [5]   [rad/s^2]          joint accelerations; norm at most 1e+08
+ * @param[in]   parameters    [65]                     standard parameters; norm at most 1e+09
+ * @param[out]  input         [5]   [A]                inputs: motor currents, efforts where undriven
+ * @param[out]  input_by_q    [25]  [A per rad]        d input / d q; 5 x 5, row-major
+ * @param[out]  input_by_dq   [25]  [A per (rad/s)]    d input / d dq; 5 x 5, row-major
+ * @param[out]  input_by_ddq  [25]  [A per (rad/s^2)]  d input / d ddq; 5 x 5, row-major
  *
  * Coordinates:
  *
@@ -96,11 +96,11 @@
  */
 #include "two_fingers_private.h"
 
-#if TWO_FINGERS_GENERATION != 0x01C0F172UL
+#if TWO_FINGERS_GENERATION != 0x24AB78D7UL
 #error "two_fingers.h and two_fingers_inverse_dynamics_derivatives_standard.c are of different generations: generate the arm again"
 #endif
 
-int two_fingers_inverse_dynamics_derivatives_standard(
+two_fingers_status_t two_fingers_inverse_dynamics_derivatives_standard(
     const two_fingers_real_t q[TWO_FINGERS_N_JOINTS],
     const two_fingers_real_t dq[TWO_FINGERS_N_JOINTS],
     const two_fingers_real_t ddq[TWO_FINGERS_N_JOINTS],
@@ -114,7 +114,7 @@ int two_fingers_inverse_dynamics_derivatives_standard(
         M2, XX3, XY3, XZ3, YY3, YZ3, ZZ3, MX3, MY3, MZ3, M3, XX4, XY4, XZ4, YY4, YZ4, ZZ4, MX4, MY4, MZ4, M4,
         XX5, XY5, XZ5, YY5, YZ5, ZZ5, MX5, MY5, MZ5, M5, FV1, FC1, IA1, FV2, FC2, IA2, FV3, FC3, IA3, FV4,
         FC4, IA4, FV5, FC5, IA5 };
-    int status = TWO_FINGERS_STATUS_OK;
+    two_fingers_status_t status = TWO_FINGERS_STATUS_OK;
 
     if (!two_fingers_within_joints(q, TWO_FINGERS_C(1.0e8))
         || !two_fingers_within_joints(dq, TWO_FINGERS_C(1.0e10))
@@ -138,7 +138,8 @@ int two_fingers_inverse_dynamics_derivatives_standard(
     TWO_FINGERS_SINCOS(q[3], &t5, &t4);
     two_fingers_real_t t18, t12;
     TWO_FINGERS_SINCOS(q[4], &t18, &t12);
-    const two_fingers_real_t t0 = dq[0] * dq[0];
+    const two_fingers_real_t t0 = dq[0] * dq[0]; /* link wrist: motion */
+    /* link right_1: motion */
     const two_fingers_real_t t1 = TWO_FINGERS_C(0.03446827135542729) * t0
         + TWO_FINGERS_C(-0.00607768621834256) * ddq[0];
     const two_fingers_real_t t2 = TWO_FINGERS_C(-0.03446827135542729) * ddq[0]
@@ -147,18 +148,18 @@ int two_fingers_inverse_dynamics_derivatives_standard(
         + TWO_FINGERS_C(-0.17364817766693028) * t2;
     const two_fingers_real_t t6 = t4 * t3 + TWO_FINGERS_C(-9.81) * t5;
     const two_fingers_real_t t7 = t4 * dq[0];
-    const two_fingers_real_t t8 = t7 * t7;
+    const two_fingers_real_t t8 = t7 * t7; /* link right_2: motion */
     const two_fingers_real_t t9 = dq[3] * dq[3];
     const two_fingers_real_t t10 = t8 + t9;
     const two_fingers_real_t t11 = t6 + TWO_FINGERS_C(0.045) * t10;
-    const two_fingers_real_t t13 = TWO_FINGERS_C(-9.81) * t4 - t5 * t3;
+    const two_fingers_real_t t13 = TWO_FINGERS_C(-9.81) * t4 - t5 * t3; /* link right_1: motion */
     const two_fingers_real_t t14 = t5 * dq[0];
-    const two_fingers_real_t t15 = t14 * t7;
+    const two_fingers_real_t t15 = t14 * t7; /* link right_2: motion */
     const two_fingers_real_t t16 = ddq[3] + t15;
     const two_fingers_real_t t17 = t13 + TWO_FINGERS_C(-0.045) * t16;
     const two_fingers_real_t t19 = t12 * t11 + t18 * t17;
-    const two_fingers_real_t t20 = t19 * parameters[M5];
-    const two_fingers_real_t t21 = t4 * t12 - t5 * t18;
+    const two_fingers_real_t t20 = t19 * parameters[M5]; /* link right_2: force and moment */
+    const two_fingers_real_t t21 = t4 * t12 - t5 * t18; /* link right_2: motion */
     const two_fingers_real_t t22 = dq[0] * t21;
     const two_fingers_real_t t23 = t22 * t22;
     const two_fingers_real_t t24 = dq[3] + dq[4];
@@ -167,57 +168,63 @@ int two_fingers_inverse_dynamics_derivatives_standard(
     const two_fingers_real_t t27 = dq[0] * t26;
     const two_fingers_real_t t28 = t27 * t22;
     const two_fingers_real_t t29 = ddq[3] + ddq[4];
-    const two_fingers_real_t t30 = t28 - t29;
-    const two_fingers_real_t t31 = ddq[0] * t21;
-    const two_fingers_real_t t32 = t31 * parameters[MZ5];
+    const two_fingers_real_t t30 = t28 - t29; /* link right_2: columns */
+    const two_fingers_real_t t31 = ddq[0] * t21; /* link right_2: motion */
+    const two_fingers_real_t t32 = t31 * parameters[MZ5]; /* link right_2: force and moment */
     const two_fingers_real_t t33 = t30 * parameters[MY5] - (t23 + t25) * parameters[MX5] + t32 - t20;
-    const two_fingers_real_t t34 = t18 * t11 - t12 * t17;
-    const two_fingers_real_t t35 = t34 * parameters[M5];
-    const two_fingers_real_t t36 = t27 * t27;
-    const two_fingers_real_t t37 = t29 + t28;
-    const two_fingers_real_t t38 = ddq[0] * t26;
-    const two_fingers_real_t t39 = t38 * parameters[MZ5];
+    const two_fingers_real_t t34 = t18 * t11 - t12 * t17; /* link right_2: motion */
+    const two_fingers_real_t t35 = t34 * parameters[M5]; /* link right_2: force and moment */
+    const two_fingers_real_t t36 = t27 * t27; /* link right_2: motion */
+    const two_fingers_real_t t37 = t29 + t28; /* link right_2: columns */
+    const two_fingers_real_t t38 = ddq[0] * t26; /* link right_2: motion */
+    const two_fingers_real_t t39 = t38 * parameters[MZ5]; /* link right_2: force and moment */
     const two_fingers_real_t t40 = (t36 + t25) * parameters[MY5] - t37 * parameters[MX5] + t39 - t35;
-    const two_fingers_real_t t41 = t15 - ddq[3];
-    const two_fingers_real_t t42 = t4 * ddq[0];
+    const two_fingers_real_t t41 = t15 - ddq[3]; /* link right_2: motion */
+    const two_fingers_real_t t42 = t4 * ddq[0]; /* link right_1: motion */
+    /* link right_1: force and moment */
     const two_fingers_real_t t43 = t6 * parameters[M4] + (t10 * parameters[MX4] - t41 * parameters[MY4]
         - t42 * parameters[MZ4]);
-    const two_fingers_real_t t44 = t43 - (t12 * t33 + t18 * t40);
+    const two_fingers_real_t t44 = t43 - (t12 * t33 + t18 * t40); /* link right_2: what it passes on */
     const two_fingers_real_t t45 = t18 * t33 - t12 * t40;
-    const two_fingers_real_t t46 = t14 * t14;
-    const two_fingers_real_t t47 = t5 * ddq[0];
+    const two_fingers_real_t t46 = t14 * t14; /* link right_2: motion */
+    const two_fingers_real_t t47 = t5 * ddq[0]; /* link right_1: motion */
+    /* link right_1: force and moment */
     const two_fingers_real_t t48 = (t46 + t9) * parameters[MY4] - t16 * parameters[MX4]
         + t47 * parameters[MZ4];
-    const two_fingers_real_t t49 = t45 - (t13 * parameters[M4] + t48);
-    const two_fingers_real_t t50 = t4 * t44 + t5 * t49;
-    const two_fingers_real_t t51 = t36 + t23;
-    const two_fingers_real_t t52 = t27 * t24;
+    const two_fingers_real_t t49 = t45 - (t13 * parameters[M4] + t48); /* link right_2: what it passes on */
+    const two_fingers_real_t t50 = t4 * t44 + t5 * t49; /* link right_1: what it passes on */
+    const two_fingers_real_t t51 = t36 + t23; /* link right_2: columns */
+    const two_fingers_real_t t52 = t27 * t24; /* link right_2: motion */
     const two_fingers_real_t t53 = t31 - t52;
-    const two_fingers_real_t t54 = t53 - t52;
-    const two_fingers_real_t t55 = t22 * t24;
+    const two_fingers_real_t t54 = t53 - t52; /* link right_2: columns */
+    const two_fingers_real_t t55 = t22 * t24; /* link right_2: motion */
     const two_fingers_real_t t56 = t38 + t55;
-    const two_fingers_real_t t57 = t55 + t56;
+    const two_fingers_real_t t57 = t55 + t56; /* link right_2: columns */
+    /* link right_1: motion */
     const two_fingers_real_t t58 = TWO_FINGERS_C(0.17364817766693028) * t1
         + TWO_FINGERS_C(0.984807753012208) * t2;
     const two_fingers_real_t t59 = dq[3] * t14;
     const two_fingers_real_t t60 = t42 - t59;
-    const two_fingers_real_t t61 = t60 - t59;
+    const two_fingers_real_t t61 = t60 - t59; /* link right_2: motion */
     const two_fingers_real_t t62 = t58 + TWO_FINGERS_C(-0.045) * t61;
+    /* link right_2: force and moment */
     const two_fingers_real_t t63 = t51 * parameters[MZ5] + (t54 * parameters[MX5] - t57 * parameters[MY5])
         - t62 * parameters[M5];
-    const two_fingers_real_t t64 = t46 + t8;
-    const two_fingers_real_t t65 = dq[3] * t7;
+    const two_fingers_real_t t64 = t46 + t8; /* link right_2: motion */
+    const two_fingers_real_t t65 = dq[3] * t7; /* link right_1: motion */
     const two_fingers_real_t t66 = t47 + t65;
-    const two_fingers_real_t t67 = t65 + t66;
+    const two_fingers_real_t t67 = t65 + t66; /* link right_2: motion */
+    /* link right_1: force and moment */
     const two_fingers_real_t t68 = t64 * parameters[MZ4] + (t61 * parameters[MX4] - t67 * parameters[MY4])
         - t58 * parameters[M4];
-    const two_fingers_real_t t69 = t68 + t63;
+    const two_fingers_real_t t69 = t68 + t63; /* link right_2: what it passes on */
+    /* link right_1: what it passes on */
     const two_fingers_real_t
         t70 = TWO_FINGERS_C(0.03446827135542729) * (TWO_FINGERS_C(0.17364817766693028) * t50
         + TWO_FINGERS_C(0.984807753012208) * t69)
         + TWO_FINGERS_C(0.00607768621834256) * (TWO_FINGERS_C(-0.984807753012208) * t50
         + TWO_FINGERS_C(0.17364817766693028) * t69);
-    const two_fingers_real_t t71 = t34 * parameters[MZ5];
+    const two_fingers_real_t t71 = t34 * parameters[MZ5]; /* link right_2: force and moment */
     const two_fingers_real_t t72 = t56 * parameters[XX5] - t55 * (parameters[YY5] - parameters[ZZ5])
         + t54 * parameters[XY5];
     const two_fingers_real_t t73 = t62 * parameters[MY5] - t71 + ((t23 - t25) * parameters[YZ5] + (t72
@@ -227,36 +234,40 @@ int two_fingers_inverse_dynamics_derivatives_standard(
         - t57 * parameters[XY5];
     const two_fingers_real_t t76 = t74 + t62 * parameters[MX5] + ((t36 - t25) * parameters[XZ5] + (t75
         + t30 * parameters[YZ5]));
+    /* link right_1: force and moment */
     const two_fingers_real_t t77 = t65 * (parameters[ZZ4] - parameters[YY4]) + t66 * parameters[XX4]
         + t61 * parameters[XY4];
     const two_fingers_real_t t78 = (t8 - t9) * parameters[YZ4] + (t77 + t16 * parameters[XZ4])
         + (t58 * parameters[MY4] + t13 * parameters[MZ4]);
-    const two_fingers_real_t t79 = t78 + (t12 * t73 + t18 * t76);
+    const two_fingers_real_t t79 = t78 + (t12 * t73 + t18 * t76); /* link right_2: what it passes on */
+    /* link right_1: force and moment */
     const two_fingers_real_t t80 = t59 * (parameters[ZZ4] - parameters[XX4]) - t60 * parameters[YY4]
         - t67 * parameters[XY4];
     const two_fingers_real_t t81 = (t46 - t9) * parameters[XZ4] + (t80 + t41 * parameters[YZ4])
         + (t6 * parameters[MZ4] + t58 * parameters[MX4]);
+    /* link right_2: what it passes on */
     const two_fingers_real_t t82 = t81 + (t12 * t76 - t18 * t73 + TWO_FINGERS_C(-0.045) * t63);
+    /* link right_1: what it passes on */
     const two_fingers_real_t t83 = ddq[0] * parameters[ZZ1] + (t5 * t79 - t4 * t82 + t70);
-    const two_fingers_real_t t84 = TWO_FINGERS_C(0.03) * t0;
+    const two_fingers_real_t t84 = TWO_FINGERS_C(0.03) * t0; /* link left_1: motion */
     const two_fingers_real_t t87 = t85 * t84 + TWO_FINGERS_C(-9.81) * t86;
     const two_fingers_real_t t88 = t85 * dq[0];
     const two_fingers_real_t t89 = t88 * t88;
     const two_fingers_real_t t90 = dq[1] * dq[1];
-    const two_fingers_real_t t91 = t87 + TWO_FINGERS_C(0.05) * (t89 + t90);
-    const two_fingers_real_t t93 = TWO_FINGERS_C(-9.81) * t85 - t86 * t84;
+    const two_fingers_real_t t91 = t87 + TWO_FINGERS_C(0.05) * (t89 + t90); /* link left_2: motion */
+    const two_fingers_real_t t93 = TWO_FINGERS_C(-9.81) * t85 - t86 * t84; /* link left_1: motion */
     const two_fingers_real_t t94 = t86 * dq[0];
     const two_fingers_real_t t95 = t94 * t88;
-    const two_fingers_real_t t96 = ddq[1] + t95;
+    const two_fingers_real_t t96 = ddq[1] + t95; /* link left_2: motion */
     const two_fingers_real_t t97 = t93 + TWO_FINGERS_C(-0.05) * t96;
     const two_fingers_real_t t99 = t92 * t91 - t98 * t97;
-    const two_fingers_real_t t100 = t99 * parameters[MZ3];
-    const two_fingers_real_t t101 = t85 * ddq[0];
+    const two_fingers_real_t t100 = t99 * parameters[MZ3]; /* link left_2: force and moment */
+    const two_fingers_real_t t101 = t85 * ddq[0]; /* link left_1: motion */
     const two_fingers_real_t t102 = dq[1] * t94;
     const two_fingers_real_t t103 = t101 - t102;
-    const two_fingers_real_t t104 = t103 - t102;
-    const two_fingers_real_t t105 = TWO_FINGERS_C(-0.03) * ddq[0];
-    const two_fingers_real_t t106 = t105 + TWO_FINGERS_C(-0.05) * t104;
+    const two_fingers_real_t t104 = t103 - t102; /* link left_2: motion */
+    const two_fingers_real_t t105 = TWO_FINGERS_C(-0.03) * ddq[0]; /* link left_1: motion */
+    const two_fingers_real_t t106 = t105 + TWO_FINGERS_C(-0.05) * t104; /* link left_2: motion */
     const two_fingers_real_t t107 = t86 * t98 + t85 * t92;
     const two_fingers_real_t t108 = ddq[0] * t107;
     const two_fingers_real_t t109 = t85 * t98 - t86 * t92;
@@ -268,92 +279,110 @@ int two_fingers_inverse_dynamics_derivatives_standard(
     const two_fingers_real_t t115 = dq[0] * t107;
     const two_fingers_real_t t116 = t115 * t111;
     const two_fingers_real_t t117 = t114 - t116;
-    const two_fingers_real_t t118 = t117 - t116;
+    const two_fingers_real_t t118 = t117 - t116; /* link left_2: columns */
+    /* link left_2: force and moment */
     const two_fingers_real_t t119 = t113 * parameters[XX3] - t112 * (parameters[YY3] - parameters[ZZ3])
         + t118 * parameters[XY3];
-    const two_fingers_real_t t120 = t115 * t110;
+    const two_fingers_real_t t120 = t115 * t110; /* link left_2: motion */
     const two_fingers_real_t t121 = ddq[1] + ddq[2];
-    const two_fingers_real_t t122 = t121 + t120;
-    const two_fingers_real_t t123 = t110 * t110;
+    const two_fingers_real_t t122 = t121 + t120; /* link left_2: columns */
+    const two_fingers_real_t t123 = t110 * t110; /* link left_2: motion */
     const two_fingers_real_t t124 = t111 * t111;
+    /* link left_2: force and moment */
     const two_fingers_real_t t125 = t100 - t106 * parameters[MY3] - ((t123 - t124) * parameters[YZ3] + (t119
         + t122 * parameters[XZ3]));
-    const two_fingers_real_t t126 = t98 * t91 + t92 * t97;
-    const two_fingers_real_t t127 = t126 * parameters[MZ3];
-    const two_fingers_real_t t128 = t112 + t113;
+    const two_fingers_real_t t126 = t98 * t91 + t92 * t97; /* link left_2: motion */
+    const two_fingers_real_t t127 = t126 * parameters[MZ3]; /* link left_2: force and moment */
+    const two_fingers_real_t t128 = t112 + t113; /* link left_2: columns */
+    /* link left_2: force and moment */
     const two_fingers_real_t t129 = t116 * (parameters[ZZ3] - parameters[XX3]) - t117 * parameters[YY3]
         - t128 * parameters[XY3];
-    const two_fingers_real_t t130 = t120 - t121;
-    const two_fingers_real_t t131 = t115 * t115;
+    const two_fingers_real_t t130 = t120 - t121; /* link left_2: columns */
+    const two_fingers_real_t t131 = t115 * t115; /* link left_2: motion */
+    /* link left_2: force and moment */
     const two_fingers_real_t t132 = t127 + t106 * parameters[MX3] + ((t131 - t124) * parameters[XZ3] + (t129
         + t130 * parameters[YZ3]));
-    const two_fingers_real_t t133 = dq[1] * t88;
+    const two_fingers_real_t t133 = dq[1] * t88; /* link left_1: motion */
     const two_fingers_real_t t134 = t86 * ddq[0];
     const two_fingers_real_t t135 = t134 + t133;
+    /* link left_1: force and moment */
     const two_fingers_real_t t136 = t133 * (parameters[ZZ2] - parameters[YY2]) + t135 * parameters[XX2]
         + t104 * parameters[XY2];
     const two_fingers_real_t t137 = (t89 - t90) * parameters[YZ2] + (t136 + t96 * parameters[XZ2])
         + (t93 * parameters[MZ2] + t105 * parameters[MY2]);
-    const two_fingers_real_t t138 = t137 + (t92 * t132 - t98 * t125);
-    const two_fingers_real_t t139 = t131 + t123;
+    const two_fingers_real_t t138 = t137 + (t92 * t132 - t98 * t125); /* link left_2: what it passes on */
+    const two_fingers_real_t t139 = t131 + t123; /* link left_2: columns */
+    /* link left_2: force and moment */
     const two_fingers_real_t t140 = t139 * parameters[MZ3] + (t118 * parameters[MX3] - t128 * parameters[MY3])
         - t106 * parameters[M3];
-    const two_fingers_real_t t141 = t133 + t135;
+    const two_fingers_real_t t141 = t133 + t135; /* link left_2: motion */
+    /* link left_1: force and moment */
     const two_fingers_real_t t142 = t102 * (parameters[ZZ2] - parameters[XX2]) - t103 * parameters[YY2]
         - t141 * parameters[XY2];
-    const two_fingers_real_t t143 = t94 * t94;
+    const two_fingers_real_t t143 = t94 * t94; /* link left_1: motion */
+    /* link left_1: force and moment */
     const two_fingers_real_t t144 = (t143 - t90) * parameters[XZ2] + (t142 + (t95
         - ddq[1]) * parameters[YZ2]);
+    /* link left_2: what it passes on */
     const two_fingers_real_t t145 = t144 + (t87 * parameters[MZ2] + t105 * parameters[MX2]) + (t92 * t125
         + t98 * t132 + TWO_FINGERS_C(-0.05) * t140);
-    const two_fingers_real_t t146 = t143 + t89;
+    const two_fingers_real_t t146 = t143 + t89; /* link left_2: motion */
+    /* link left_1: force and moment */
     const two_fingers_real_t t147 = t146 * parameters[MZ2] + (t104 * parameters[MX2] - t141 * parameters[MY2])
         - t105 * parameters[M2];
+    /* link left_1: what it passes on */
     const two_fingers_real_t t148 = t86 * t138 - t85 * t145 + TWO_FINGERS_C(0.03) * (t147 + t140);
-    const two_fingers_real_t t149 = two_fingers_sign(dq[0]);
+    const two_fingers_real_t t149 = two_fingers_sign(dq[0]); /* joint wrist: coulomb_friction */
     const two_fingers_real_t t150 = TWO_FINGERS_C(60.0) * dq[0] * parameters[FV1] + t149 * parameters[FC1]
         + TWO_FINGERS_C(60.0) * ddq[0] * parameters[IA1];
     input[0] = TWO_FINGERS_C(25.0) * t150 + TWO_FINGERS_C(0.4166666666666667) * (t83 + t148);
-    const two_fingers_real_t t151 = t126 * parameters[M3];
+    const two_fingers_real_t t151 = t126 * parameters[M3]; /* link left_2: force and moment */
     const two_fingers_real_t t152 = t114 * parameters[MZ3];
     const two_fingers_real_t t153 = t130 * parameters[MY3] - (t123 + t124) * parameters[MX3] + t152 - t151;
     const two_fingers_real_t t154 = t99 * parameters[M3];
     const two_fingers_real_t t155 = t108 * parameters[MZ3];
     const two_fingers_real_t t156 = (t131 + t124) * parameters[MY3] - t122 * parameters[MX3] + t155 - t154;
+    /* link left_2: inertia of it and all beyond */
     const two_fingers_real_t t157 = parameters[XX3] - parameters[YY3];
+    /* link left_2: force and moment */
     const two_fingers_real_t t158 = t121 * parameters[ZZ3] - t120 * t157 + t114 * parameters[YZ3]
         + t108 * parameters[XZ3];
     const two_fingers_real_t t159 = t99 * parameters[MX3] + t126 * parameters[MY3] + ((t131
         - t123) * parameters[XY3] + t158);
+    /* link left_1: force and moment */
     const two_fingers_real_t t160 = t95 * (parameters[YY2] - parameters[XX2]) + ddq[1] * parameters[ZZ2]
         + t101 * parameters[YZ2];
     const two_fingers_real_t t161 = t87 * parameters[MY2] - t93 * parameters[MX2] + ((t143
         - t89) * parameters[XY2] + (t160 + t134 * parameters[XZ2]));
+    /* link left_2: what it passes on */
     const two_fingers_real_t t162 = t161 + (t159 + TWO_FINGERS_C(0.05) * (t92 * t153 - t98 * t156));
-    const two_fingers_real_t t163 = two_fingers_sign(dq[1]);
+    const two_fingers_real_t t163 = two_fingers_sign(dq[1]); /* joint left_1: coulomb_friction */
     const two_fingers_real_t t164 = TWO_FINGERS_C(30.0) * dq[1] * parameters[FV2] + t163 * parameters[FC2]
         + TWO_FINGERS_C(30.0) * ddq[1] * parameters[IA2];
     input[1] = TWO_FINGERS_C(50.0) * t164 + TWO_FINGERS_C(1.6666666666666667) * t162;
-    const two_fingers_real_t t165 = two_fingers_sign(dq[2]);
+    const two_fingers_real_t t165 = two_fingers_sign(dq[2]); /* joint left_2: coulomb_friction */
     const two_fingers_real_t t166 = TWO_FINGERS_C(30.0) * dq[2] * parameters[FV3] + t165 * parameters[FC3]
         + TWO_FINGERS_C(30.0) * ddq[2] * parameters[IA3];
     input[2] = TWO_FINGERS_C(50.0) * t166 + TWO_FINGERS_C(1.6666666666666667) * t159;
+    /* link right_2: inertia of it and all beyond */
     const two_fingers_real_t t167 = parameters[XX5] - parameters[YY5];
+    /* link right_2: force and moment */
     const two_fingers_real_t t168 = t29 * parameters[ZZ5] - t28 * t167 + t31 * parameters[YZ5]
         + t38 * parameters[XZ5];
     const two_fingers_real_t t169 = t34 * parameters[MX5] + t19 * parameters[MY5] + ((t36
         - t23) * parameters[XY5] + t168);
+    /* link right_1: force and moment */
     const two_fingers_real_t t170 = t15 * (parameters[YY4] - parameters[XX4]) + ddq[3] * parameters[ZZ4]
         + t42 * parameters[YZ4];
     const two_fingers_real_t t171 = (t46 - t8) * parameters[XY4] + (t170 + t47 * parameters[XZ4])
         + (t6 * parameters[MY4] - t13 * parameters[MX4]);
-    const two_fingers_real_t t172 = two_fingers_sign(dq[3]);
+    const two_fingers_real_t t172 = two_fingers_sign(dq[3]); /* joint right_1: coulomb_friction */
     const two_fingers_real_t t173 = TWO_FINGERS_C(30.0) * dq[3] * parameters[FV4] + t172 * parameters[FC4]
         + TWO_FINGERS_C(30.0) * ddq[3] * parameters[IA4];
     const two_fingers_real_t t174 = TWO_FINGERS_C(50.0) * t173 + TWO_FINGERS_C(1.6666666666666667) * (t171
         + (t169 + TWO_FINGERS_C(0.045) * t45));
     input[3] = t174;
-    const two_fingers_real_t t175 = two_fingers_sign(dq[4]);
+    const two_fingers_real_t t175 = two_fingers_sign(dq[4]); /* joint right_2: coulomb_friction */
     const two_fingers_real_t t176 = TWO_FINGERS_C(30.0) * dq[4] * parameters[FV5] + t175 * parameters[FC5]
         + TWO_FINGERS_C(30.0) * ddq[4] * parameters[IA5];
     input[4] = TWO_FINGERS_C(50.0) * t176 + TWO_FINGERS_C(1.6666666666666667) * t169;
@@ -368,17 +397,19 @@ int two_fingers_inverse_dynamics_derivatives_standard(
     const two_fingers_real_t t184 = t182 - t183;
     const two_fingers_real_t t185 = t27 * parameters[YZ5];
     const two_fingers_real_t t186 = t183 - t185;
+    /* link right_2: inertia, momentum beyond */
     const two_fingers_real_t t187 = t12 * (t184 - t186) + t18 * (t181 - t179);
     const two_fingers_real_t t188 = t12 * t187;
     const two_fingers_real_t t189 = t24 * parameters[MY5] - t22 * parameters[MZ5];
     const two_fingers_real_t t190 = t27 * parameters[MZ5] - t24 * parameters[MX5];
     const two_fingers_real_t t191 = t12 * t189 - t18 * t190;
     const two_fingers_real_t t192 = TWO_FINGERS_C(0.045) * t191;
+    /* link right_2: column of the mass matrix */
     const two_fingers_real_t t193 = t12 * parameters[MY5] + t18 * parameters[MX5];
-    const two_fingers_real_t t194 = TWO_FINGERS_C(-0.045) * dq[3];
-    const two_fingers_real_t t195 = t193 * t194;
-    const two_fingers_real_t t196 = TWO_FINGERS_C(-0.045) * t7;
-    const two_fingers_real_t t197 = parameters[MZ5] * t196;
+    const two_fingers_real_t t194 = TWO_FINGERS_C(-0.045) * dq[3]; /* link right_2: velocity of its origin */
+    const two_fingers_real_t t195 = t193 * t194; /* link right_2: inertia, momentum beyond */
+    const two_fingers_real_t t196 = TWO_FINGERS_C(-0.045) * t7; /* link right_2: velocity of its origin */
+    const two_fingers_real_t t197 = parameters[MZ5] * t196; /* link right_2: inertia, momentum beyond */
     const two_fingers_real_t t198 = t197 - t195 - t192;
     const two_fingers_real_t t199 = t7 * parameters[XZ4];
     const two_fingers_real_t t200 = dq[3] * parameters[XY4];
@@ -391,37 +422,50 @@ int two_fingers_inverse_dynamics_derivatives_standard(
     const two_fingers_real_t t206 = t205 - parameters[YY4];
     const two_fingers_real_t t207 = t7 * parameters[YZ4] + dq[3] * t206 + (t204 - t181);
     const two_fingers_real_t t208 = t18 * t189 + t12 * t190;
+    /* link right_2: column of the mass matrix */
     const two_fingers_real_t t209 = t12 * parameters[MX5] - t18 * parameters[MY5];
+    /* link right_2: inertia of it and all beyond */
     const two_fingers_real_t t210 = TWO_FINGERS_C(0.045) * parameters[M5];
     const two_fingers_real_t t211 = t209 + t210;
     const two_fingers_real_t t212 = parameters[XX4] - t205;
+    /* link right_2: inertia, momentum beyond */
     const two_fingers_real_t t213 = dq[3] * t212 - t14 * parameters[XZ4] + (t179 + t204
         + (TWO_FINGERS_C(0.045) * t208 + t211 * t194));
+    /* link right_1: inertia, momentum beyond */
     const two_fingers_real_t t214 = t4 * (t4 * (t203 - t201) + t5 * (t207 + t213));
+    /* link right_2: inertia, momentum beyond */
     const two_fingers_real_t t215 = t7 * parameters[MZ4] - dq[3] * parameters[MY4] - t191;
     const two_fingers_real_t t216 = t14 * parameters[MZ4] - dq[3] * parameters[MX4] + (t208
         + parameters[M5] * t194);
+    /* link right_1: inertia, momentum beyond */
     const two_fingers_real_t t217 = TWO_FINGERS_C(0.07) * (t5 * t215 - t4 * t216);
     const two_fingers_real_t t218 = t4 * t215 + t5 * t216;
     const two_fingers_real_t t219 = t22 * parameters[MX5] - t27 * parameters[MY5];
+    /* link right_2: inertia, momentum beyond */
     const two_fingers_real_t t220 = t14 * parameters[MY4] - t7 * parameters[MX4] + (parameters[M5] * t196
         - t219);
+    /* link right_1: inertia, momentum beyond */
     const two_fingers_real_t
         t221 = TWO_FINGERS_C(0.03446827135542729) * (TWO_FINGERS_C(0.984807753012208) * t218
         + TWO_FINGERS_C(-0.17364817766693028) * t220)
         + TWO_FINGERS_C(0.00607768621834256) * (TWO_FINGERS_C(0.17364817766693028) * t218
         + TWO_FINGERS_C(0.984807753012208) * t220);
-    const two_fingers_real_t t222 = parameters[MY4] + t193;
+    const two_fingers_real_t t222 = parameters[MY4] + t193; /* link right_2: inertia of it and all beyond */
     const two_fingers_real_t t223 = parameters[MX4] + t211;
-    const two_fingers_real_t t224 = t5 * t222 - t4 * t223;
+    const two_fingers_real_t t224 = t5 * t222 - t4 * t223; /* link right_1: column of the mass matrix */
+    /* link right_2: inertia of it and all beyond */
     const two_fingers_real_t t225 = parameters[MZ4] + parameters[MZ5];
+    /* link right_1: inertia of it and all beyond */
     const two_fingers_real_t t226 = TWO_FINGERS_C(-0.984807753012208) * t224
         + TWO_FINGERS_C(-0.17364817766693028) * t225;
+    /* link right_2: inertia of it and all beyond */
     const two_fingers_real_t t227 = parameters[M4] + parameters[M5];
+    /* link right_1: inertia of it and all beyond */
     const two_fingers_real_t t228 = TWO_FINGERS_C(0.03446827135542729) * t227;
     const two_fingers_real_t t229 = TWO_FINGERS_C(0.17364817766693028) * t224
         + TWO_FINGERS_C(-0.984807753012208) * t225;
     const two_fingers_real_t t230 = TWO_FINGERS_C(0.00607768621834256) * t227;
+    /* link right_1: inertia, momentum beyond */
     const two_fingers_real_t t231 = (t229 - t230) * (TWO_FINGERS_C(0.03446827135542729) * dq[0]) - (t226
         + t228) * (TWO_FINGERS_C(-0.00607768621834256) * dq[0]);
     const two_fingers_real_t t232 = TWO_FINGERS_C(0.5) * (parameters[ZZ3] + (parameters[XX3]
@@ -435,17 +479,19 @@ int two_fingers_inverse_dynamics_derivatives_standard(
     const two_fingers_real_t t239 = t237 - t238;
     const two_fingers_real_t t240 = t115 * parameters[YZ3];
     const two_fingers_real_t t241 = t238 - t240;
+    /* link left_2: inertia, momentum beyond */
     const two_fingers_real_t t242 = t98 * (t239 - t241) + t92 * (t236 - t234);
     const two_fingers_real_t t243 = t98 * t242;
     const two_fingers_real_t t244 = t111 * parameters[MY3] - t110 * parameters[MZ3];
     const two_fingers_real_t t245 = t115 * parameters[MZ3] - t111 * parameters[MX3];
     const two_fingers_real_t t246 = t98 * t244 - t92 * t245;
     const two_fingers_real_t t247 = TWO_FINGERS_C(0.05) * t246;
+    /* link left_2: column of the mass matrix */
     const two_fingers_real_t t248 = t98 * parameters[MY3] + t92 * parameters[MX3];
-    const two_fingers_real_t t249 = TWO_FINGERS_C(-0.05) * dq[1];
-    const two_fingers_real_t t250 = t248 * t249;
-    const two_fingers_real_t t251 = TWO_FINGERS_C(-0.05) * t88;
-    const two_fingers_real_t t252 = parameters[MZ3] * t251;
+    const two_fingers_real_t t249 = TWO_FINGERS_C(-0.05) * dq[1]; /* link left_2: velocity of its origin */
+    const two_fingers_real_t t250 = t248 * t249; /* link left_2: inertia, momentum beyond */
+    const two_fingers_real_t t251 = TWO_FINGERS_C(-0.05) * t88; /* link left_2: velocity of its origin */
+    const two_fingers_real_t t252 = parameters[MZ3] * t251; /* link left_2: inertia, momentum beyond */
     const two_fingers_real_t t253 = t252 - t250 - t247;
     const two_fingers_real_t t254 = t88 * parameters[XZ2];
     const two_fingers_real_t t255 = dq[1] * parameters[XY2];
@@ -458,18 +504,26 @@ int two_fingers_inverse_dynamics_derivatives_standard(
     const two_fingers_real_t t261 = t260 - parameters[YY2];
     const two_fingers_real_t t262 = t88 * parameters[YZ2] + dq[1] * t261 + (t259 - t236);
     const two_fingers_real_t t263 = t92 * t244 + t98 * t245;
+    /* link left_2: column of the mass matrix */
     const two_fingers_real_t t264 = t98 * parameters[MX3] - t92 * parameters[MY3];
+    /* link left_2: inertia of it and all beyond */
     const two_fingers_real_t t265 = TWO_FINGERS_C(0.05) * parameters[M3];
     const two_fingers_real_t t266 = t264 + t265;
     const two_fingers_real_t t267 = parameters[XX2] - t260;
+    /* link left_2: inertia, momentum beyond */
     const two_fingers_real_t t268 = dq[1] * t267 - t94 * parameters[XZ2] + (t234 + t259
         + (TWO_FINGERS_C(0.05) * t263 + t266 * t249));
+    /* link left_1: inertia, momentum beyond */
     const two_fingers_real_t t269 = t85 * (t85 * (t258 - t256) + t86 * (t262 + t268));
+    /* link left_2: inertia, momentum beyond */
     const two_fingers_real_t t270 = t88 * parameters[MZ2] - dq[1] * parameters[MY2] - t246;
     const two_fingers_real_t t271 = t94 * parameters[MZ2] - dq[1] * parameters[MX2] + (t263
         + parameters[M3] * t249);
+    /* link left_1: inertia, momentum beyond */
     const two_fingers_real_t t272 = TWO_FINGERS_C(0.08) * (t86 * t270 - t85 * t271);
+    /* link left_2: inertia of it and all beyond */
     const two_fingers_real_t t273 = parameters[MZ2] + parameters[MZ3];
+    /* link left_1: inertia, momentum beyond */
     const two_fingers_real_t t274 = TWO_FINGERS_C(0.03) * (t85 * t270 + t86 * t271) + t272
         + t273 * (TWO_FINGERS_C(-0.03) * dq[0]);
     const two_fingers_real_t t275 = t221 + t217 + t231 + (t201 + t214 - t217) + (t274 + (t256 + t269 - t272));
@@ -477,17 +531,21 @@ int two_fingers_inverse_dynamics_derivatives_standard(
     const two_fingers_real_t t276 = t115 * parameters[XY3] - t110 * t233;
     const two_fingers_real_t t277 = t110 * parameters[XY3] - t115 * t235;
     const two_fingers_real_t t278 = t110 * parameters[MX3] - t115 * parameters[MY3];
+    /* link left_2: inertia, momentum beyond */
     const two_fingers_real_t t279 = t98 * t276 + t92 * t277 + (TWO_FINGERS_C(0.05) * t278 - t266 * t251);
+    /* link left_1: derivatives */
     const two_fingers_real_t t280 = TWO_FINGERS_C(2.0) * (t94 * parameters[XY2] - t88 * t267 + t279);
+    /* link left_2: inertia, momentum beyond */
     const two_fingers_real_t t281 = t88 * parameters[XY2] + t94 * t261 - (t92 * t276 - t98 * t277
         - t248 * t251);
-    const two_fingers_real_t t282 = TWO_FINGERS_C(2.0) * t281;
-    const two_fingers_real_t t283 = parameters[MY2] + t248;
+    const two_fingers_real_t t282 = TWO_FINGERS_C(2.0) * t281; /* link left_1: derivatives */
+    const two_fingers_real_t t283 = parameters[MY2] + t248; /* link left_2: inertia of it and all beyond */
     const two_fingers_real_t t284 = parameters[MX2] + t266;
     const two_fingers_real_t t285 = TWO_FINGERS_C(0.06) * dq[0];
+    /* link left_1: derivatives */
     const two_fingers_real_t t286 = t86 * t280 - t85 * t282 + (t85 * t283 + t86 * t284) * t285;
     input_by_dq[5] = TWO_FINGERS_C(1.6666666666666667) * t286;
-    const two_fingers_real_t t287 = TWO_FINGERS_C(2.0) * t276;
+    const two_fingers_real_t t287 = TWO_FINGERS_C(2.0) * t276; /* link left_2: derivatives */
     const two_fingers_real_t t288 = TWO_FINGERS_C(2.0) * t277;
     const two_fingers_real_t t289 = TWO_FINGERS_C(-0.1) * t88;
     const two_fingers_real_t t290 = t98 * t287 + t92 * t288 - t264 * t289;
@@ -496,26 +554,32 @@ int two_fingers_inverse_dynamics_derivatives_standard(
     input_by_dq[10] = TWO_FINGERS_C(1.6666666666666667) * t292;
     const two_fingers_real_t t293 = t27 * parameters[XY5] - t22 * t178;
     const two_fingers_real_t t294 = t22 * parameters[XY5] - t27 * t180;
+    /* link right_2: inertia, momentum beyond */
     const two_fingers_real_t t295 = t12 * t293 + t18 * t294 + (TWO_FINGERS_C(0.045) * t219 - t211 * t196);
+    /* link right_1: derivatives */
     const two_fingers_real_t t296 = TWO_FINGERS_C(2.0) * (t14 * parameters[XY4] - t7 * t212 + t295);
+    /* link right_2: inertia, momentum beyond */
     const two_fingers_real_t t297 = t7 * parameters[XY4] + t14 * t206 - (t18 * t293 - t12 * t294
         - t193 * t196);
-    const two_fingers_real_t t298 = TWO_FINGERS_C(2.0) * t297;
-    const two_fingers_real_t t299 = t4 * t222 + t5 * t223;
+    const two_fingers_real_t t298 = TWO_FINGERS_C(2.0) * t297; /* link right_1: derivatives */
+    const two_fingers_real_t t299 = t4 * t222 + t5 * t223; /* link right_1: column of the mass matrix */
     const two_fingers_real_t t300 = TWO_FINGERS_C(0.01215537243668512) * dq[0];
     const two_fingers_real_t t301 = TWO_FINGERS_C(0.06893654271085457) * dq[0];
+    /* link right_1: derivatives */
     const two_fingers_real_t t302 = t5 * t296 - t4 * t298 + (TWO_FINGERS_C(0.17364817766693028) * t299 * t300
         + TWO_FINGERS_C(0.984807753012208) * t299 * t301);
     input_by_dq[15] = TWO_FINGERS_C(1.6666666666666667) * t302;
-    const two_fingers_real_t t303 = TWO_FINGERS_C(2.0) * t293;
+    const two_fingers_real_t t303 = TWO_FINGERS_C(2.0) * t293; /* link right_2: derivatives */
     const two_fingers_real_t t304 = TWO_FINGERS_C(2.0) * t294;
     const two_fingers_real_t t305 = TWO_FINGERS_C(-0.09) * t7;
     const two_fingers_real_t t306 = t12 * t303 + t18 * t304 - t209 * t305;
     const two_fingers_real_t t307 = t18 * t303 - t12 * t304 - t193 * t305;
-    const two_fingers_real_t t308 = t4 * t193 + t5 * t209;
+    const two_fingers_real_t t308 = t4 * t193 + t5 * t209; /* link right_2: column of the mass matrix */
+    /* link right_2: derivatives */
     const two_fingers_real_t t309 = t5 * t306 + t4 * t307 + (TWO_FINGERS_C(0.17364817766693028) * t308 * t300
         + TWO_FINGERS_C(0.984807753012208) * t308 * t301);
     input_by_dq[20] = TWO_FINGERS_C(1.6666666666666667) * t309;
+    /* link right_2: inertia of it and all beyond */
     const two_fingers_real_t t310 = t12 * t167 + parameters[XY5] * (TWO_FINGERS_C(-2.0) * t18);
     const two_fingers_real_t t311 = t12 * t310;
     const two_fingers_real_t t312 = TWO_FINGERS_C(0.045) * (t210 - TWO_FINGERS_C(-2.0) * t209);
@@ -523,9 +587,11 @@ int two_fingers_inverse_dynamics_derivatives_standard(
     const two_fingers_real_t t314 = parameters[XX4] + (parameters[YY5] + t311);
     const two_fingers_real_t t315 = parameters[XY4] + (parameters[XY5] + t18 * t310
         + TWO_FINGERS_C(-0.045) * t193);
+    /* link right_1: inertia of it and all beyond */
     const two_fingers_real_t t316 = t4 * (t4 * (t313 - t314) + t315 * (TWO_FINGERS_C(2.0) * t5));
     const two_fingers_real_t t317 = TWO_FINGERS_C(0.03446827135542729) * (t228 + TWO_FINGERS_C(2.0) * t226)
         + TWO_FINGERS_C(0.00607768621834256) * (t230 + TWO_FINGERS_C(-2.0) * t229);
+    /* link left_2: inertia of it and all beyond */
     const two_fingers_real_t t318 = t98 * t157 + parameters[XY3] * (TWO_FINGERS_C(-2.0) * t92);
     const two_fingers_real_t t319 = t98 * t318;
     const two_fingers_real_t t320 = TWO_FINGERS_C(0.05) * (t265 - TWO_FINGERS_C(-2.0) * t264);
@@ -533,49 +599,67 @@ int two_fingers_inverse_dynamics_derivatives_standard(
     const two_fingers_real_t t322 = parameters[XX2] + (parameters[YY3] + t319);
     const two_fingers_real_t t323 = parameters[XY2] + (parameters[XY3] + t92 * t318
         + TWO_FINGERS_C(-0.05) * t248);
+    /* link left_1: inertia of it and all beyond */
     const two_fingers_real_t t324 = t85 * (t85 * (t321 - t322) + t323 * (TWO_FINGERS_C(2.0) * t86));
     const two_fingers_real_t t325 = TWO_FINGERS_C(0.03) * (parameters[M2] + parameters[M3])
         + TWO_FINGERS_C(2.0) * (t85 * t284 - t86 * t283);
     const two_fingers_real_t t326 = parameters[ZZ1] + (t314 + t316 + t317) + (t322 + t324
         + TWO_FINGERS_C(0.03) * t325);
     input_by_ddq[0] = TWO_FINGERS_C(1.5e3) * parameters[IA1] + TWO_FINGERS_C(0.4166666666666667) * t326;
+    /* link left_2: column of the mass matrix */
     const two_fingers_real_t t327 = t98 * parameters[XZ3] - t92 * parameters[YZ3];
+    /* link left_2: inertia of it and all beyond */
     const two_fingers_real_t t328 = parameters[XZ2] + (t327 + TWO_FINGERS_C(-0.05) * parameters[MZ3]);
+    /* link left_2: column of the mass matrix */
     const two_fingers_real_t t329 = t92 * parameters[XZ3] + t98 * parameters[YZ3];
-    const two_fingers_real_t t330 = parameters[YZ2] + t329;
-    const two_fingers_real_t t331 = t86 * t328 + t85 * t330;
+    const two_fingers_real_t t330 = parameters[YZ2] + t329; /* link left_2: inertia of it and all beyond */
+    const two_fingers_real_t t331 = t86 * t328 + t85 * t330; /* link left_1: column of the mass matrix */
     input_by_ddq[5] = TWO_FINGERS_C(1.6666666666666667) * t331;
-    const two_fingers_real_t t332 = t86 * t327 + t85 * t329;
+    const two_fingers_real_t t332 = t86 * t327 + t85 * t329; /* link left_2: column of the mass matrix */
     input_by_ddq[10] = TWO_FINGERS_C(1.6666666666666667) * t332;
+    /* link right_2: column of the mass matrix */
     const two_fingers_real_t t333 = t12 * parameters[XZ5] - t18 * parameters[YZ5];
+    /* link right_2: inertia of it and all beyond */
     const two_fingers_real_t t334 = parameters[XZ4] + (t333 + TWO_FINGERS_C(-0.045) * parameters[MZ5]);
+    /* link right_2: column of the mass matrix */
     const two_fingers_real_t t335 = t18 * parameters[XZ5] + t12 * parameters[YZ5];
-    const two_fingers_real_t t336 = parameters[YZ4] + t335;
+    const two_fingers_real_t t336 = parameters[YZ4] + t335; /* link right_2: inertia of it and all beyond */
+    /* link right_1: column of the mass matrix */
     const two_fingers_real_t t337 = t5 * t334 + t4 * t336 + TWO_FINGERS_C(8.673617379884035e-19) * t299;
     input_by_ddq[15] = TWO_FINGERS_C(1.6666666666666667) * t337;
+    /* link right_2: column of the mass matrix */
     const two_fingers_real_t t338 = t5 * t333 + t4 * t335 + TWO_FINGERS_C(8.673617379884035e-19) * t308;
     input_by_ddq[20] = TWO_FINGERS_C(1.6666666666666667) * t338;
     const two_fingers_real_t t339 = TWO_FINGERS_C(2.0) * t88;
     const two_fingers_real_t t340 = TWO_FINGERS_C(-2.0) * t94;
+    /* link left_1: derivatives */
     const two_fingers_real_t t341 = t339 * t256 + t340 * t262 + (t101 * t322 - t134 * t323 - t146 * t328);
     const two_fingers_real_t t342 = t339 * t268 + t340 * t258 + (t101 * t323 - t134 * t321 - t146 * t330);
     const two_fingers_real_t t343 = t86 * (t145 + (t341 - t87 * t273)) + t85 * (t138 + (t342 - t93 * t273));
     const two_fingers_real_t t344 = t339 * t271 + t340 * t270 - (t101 * t283 + t134 * t284);
     input_by_q[1] = TWO_FINGERS_C(0.4166666666666667) * (t343 + TWO_FINGERS_C(0.03) * t344);
+    /* link left_2: inertia of it and all beyond */
     const two_fingers_real_t t345 = parameters[ZZ2] + (parameters[ZZ3] + t320);
+    /* link left_1: derivatives */
     const two_fingers_real_t t346 = t101 * t328 - t134 * t330 - t146 * t345 + (t88 * t280 + t94 * t282);
     input_by_q[6] = TWO_FINGERS_C(1.6666666666666667) * (t87 * t284 + t93 * t283 + t346);
+    /* link left_2: column of the mass matrix */
     const two_fingers_real_t t347 = parameters[ZZ3] - TWO_FINGERS_C(-0.05) * t264;
+    /* link left_2: derivatives */
     const two_fingers_real_t t348 = t88 * t290 - t94 * t291 + (t101 * t327 - t134 * t329 - t146 * t347);
     input_by_q[11] = TWO_FINGERS_C(1.6666666666666667) * (t348 + (t93 * t248 + t87 * t264));
     const two_fingers_real_t t349 = t232 - parameters[ZZ3];
     const two_fingers_real_t t350 = t111 * parameters[YZ3] + t110 * t349;
     const two_fingers_real_t t351 = t111 * parameters[XZ3] + t115 * t349;
     const two_fingers_real_t t352 = parameters[ZZ2] - t260;
+    /* link left_2: inertia, momentum beyond */
     const two_fingers_real_t t353 = t88 * t352 - dq[1] * parameters[YZ2] - (t98 * t350 + t92 * t351);
+    /* link left_1: derivatives */
     const two_fingers_real_t t354 = t86 * (TWO_FINGERS_C(2.0) * t353 + (t322 * t339 + t323 * t340));
+    /* link left_2: inertia, momentum beyond */
     const two_fingers_real_t t355 = dq[1] * parameters[XZ2] - t94 * t352 + (t98 * t351 - t92 * t350
         + parameters[MZ3] * t249);
+    /* link left_1: derivatives */
     const two_fingers_real_t t356 = t85 * (TWO_FINGERS_C(2.0) * t355 + (t323 * t339 + t321 * t340));
     const two_fingers_real_t t357 = t354 + t356 + TWO_FINGERS_C(0.03) * (t284 * t340 - t283 * t339);
     input_by_dq[1] = TWO_FINGERS_C(0.4166666666666667) * t357;
@@ -583,7 +667,7 @@ int two_fingers_inverse_dynamics_derivatives_standard(
     const two_fingers_real_t t359 = TWO_FINGERS_C(2.0) * (t257 - t254 + (t253 + (t358 - t252)))
         + TWO_FINGERS_C(2.0) * (t88 * t328 - t94 * t330);
     input_by_dq[6] = TWO_FINGERS_C(1.5e3) * parameters[FV2] + TWO_FINGERS_C(1.6666666666666667) * t359;
-    const two_fingers_real_t t360 = TWO_FINGERS_C(2.0) * t358;
+    const two_fingers_real_t t360 = TWO_FINGERS_C(2.0) * t358; /* link left_2: derivatives */
     const two_fingers_real_t t361 = t360 + t248 * (TWO_FINGERS_C(0.1) * dq[1])
         + TWO_FINGERS_C(2.0) * (t88 * t327 - t94 * t329);
     input_by_dq[11] = TWO_FINGERS_C(1.6666666666666667) * t361;
@@ -633,6 +717,7 @@ int two_fingers_inverse_dynamics_derivatives_standard(
     input_by_ddq[12] = TWO_FINGERS_C(1.5e3) * parameters[IA3]
         + TWO_FINGERS_C(1.6666666666666667) * parameters[ZZ3];
     const two_fingers_real_t t385 = TWO_FINGERS_C(-2.0) * t14;
+    /* link right_1: derivatives */
     const two_fingers_real_t t386 = t13 * t227 - t385 * t220 + (t47 * t225 - t64 * t222);
     const two_fingers_real_t t387 = TWO_FINGERS_C(2.0) * t7;
     const two_fingers_real_t t388 = t387 * t220 - t6 * t227 + (t64 * t223 + t42 * t225);
@@ -647,20 +732,28 @@ int two_fingers_inverse_dynamics_derivatives_standard(
     const two_fingers_real_t t393 = t387 * t213 + t385 * t203 + (t42 * t315 - t47 * t313 - t64 * t336);
     const two_fingers_real_t t394 = t5 * (t82 + (t392 - t6 * t225)) + t4 * (t79 + (t393 - t13 * t225));
     input_by_q[3] = TWO_FINGERS_C(0.4166666666666667) * (t394 + t391);
+    /* link right_2: inertia of it and all beyond */
     const two_fingers_real_t t395 = parameters[ZZ4] + (parameters[ZZ5] + t312);
+    /* link right_1: derivatives */
     const two_fingers_real_t t396 = t42 * t334 - t47 * t336 - t64 * t395 + (t7 * t296 + t14 * t298);
     input_by_q[18] = TWO_FINGERS_C(1.6666666666666667) * (t6 * t223 + t13 * t222 + t396);
+    /* link right_2: column of the mass matrix */
     const two_fingers_real_t t397 = parameters[ZZ5] - TWO_FINGERS_C(-0.045) * t209;
+    /* link right_2: derivatives */
     const two_fingers_real_t t398 = t7 * t306 - t14 * t307 + (t42 * t333 - t47 * t335 - t64 * t397);
     input_by_q[23] = TWO_FINGERS_C(1.6666666666666667) * (t398 + (t13 * t193 + t6 * t209));
     const two_fingers_real_t t399 = t177 - parameters[ZZ5];
     const two_fingers_real_t t400 = t24 * parameters[YZ5] + t22 * t399;
     const two_fingers_real_t t401 = t24 * parameters[XZ5] + t27 * t399;
     const two_fingers_real_t t402 = parameters[ZZ4] - t205;
+    /* link right_2: inertia, momentum beyond */
     const two_fingers_real_t t403 = t7 * t402 - dq[3] * parameters[YZ4] - (t12 * t400 + t18 * t401);
+    /* link right_1: derivatives */
     const two_fingers_real_t t404 = t5 * (TWO_FINGERS_C(2.0) * t403 + (t314 * t387 + t315 * t385));
+    /* link right_2: inertia, momentum beyond */
     const two_fingers_real_t t405 = dq[3] * parameters[XZ4] - t14 * t402 + (t12 * t401 - t18 * t400
         + parameters[MZ5] * t194);
+    /* link right_1: derivatives */
     const two_fingers_real_t t406 = t4 * (TWO_FINGERS_C(2.0) * t405 + (t315 * t387 + t313 * t385));
     const two_fingers_real_t t407 = t4 * (TWO_FINGERS_C(-2.0) * t216 - t225 * t385)
         + t5 * (TWO_FINGERS_C(2.0) * t215 - t225 * t387);
@@ -675,7 +768,7 @@ int two_fingers_inverse_dynamics_derivatives_standard(
     const two_fingers_real_t t411 = TWO_FINGERS_C(2.0) * (t202 - t199 + (t198 + (t410 - t197)))
         + TWO_FINGERS_C(2.0) * (t7 * t334 - t14 * t336);
     input_by_dq[18] = TWO_FINGERS_C(1.5e3) * parameters[FV4] + TWO_FINGERS_C(1.6666666666666667) * t411;
-    const two_fingers_real_t t412 = TWO_FINGERS_C(2.0) * t410;
+    const two_fingers_real_t t412 = TWO_FINGERS_C(2.0) * t410; /* link right_2: derivatives */
     const two_fingers_real_t t413 = t412 + t193 * (TWO_FINGERS_C(0.09) * dq[3])
         + TWO_FINGERS_C(2.0) * (t7 * t333 - t14 * t335);
     input_by_dq[23] = TWO_FINGERS_C(1.6666666666666667) * t413;

@@ -6,7 +6,7 @@
  * Arm two_fingers, description a6b389943be5f64e.
  * SPDX-License-Identifier: 0BSD
  *
- * Operations: 505 (272 mul, 233 add, 0 neg), 8 trig, 5 other.
+ * Operations: 505 (272 mul, 233 add, 0 neg), 8 trig, 5 other calls (sign, select and the like).
  *
  * @param[in]   q           [5]   [rad]      joint coordinates; norm at most 10000
  * @param[in]   dq          [5]   [rad/s]    joint velocities; norm at most 100000
@@ -92,11 +92,11 @@
  */
 #include "two_fingers_private.h"
 
-#if TWO_FINGERS_GENERATION != 0x01C0F172UL
+#if TWO_FINGERS_GENERATION != 0x24AB78D7UL
 #error "two_fingers.h and two_fingers_inverse_dynamics_standard.c are of different generations: generate the arm again"
 #endif
 
-int two_fingers_inverse_dynamics_standard(
+two_fingers_status_t two_fingers_inverse_dynamics_standard(
     const two_fingers_real_t q[TWO_FINGERS_N_JOINTS],
     const two_fingers_real_t dq[TWO_FINGERS_N_JOINTS],
     const two_fingers_real_t ddq[TWO_FINGERS_N_JOINTS],
@@ -107,7 +107,7 @@ int two_fingers_inverse_dynamics_standard(
         M2, XX3, XY3, XZ3, YY3, YZ3, ZZ3, MX3, MY3, MZ3, M3, XX4, XY4, XZ4, YY4, YZ4, ZZ4, MX4, MY4, MZ4, M4,
         XX5, XY5, XZ5, YY5, YZ5, ZZ5, MX5, MY5, MZ5, M5, FV1, FC1, IA1, FV2, FC2, IA2, FV3, FC3, IA3, FV4,
         FC4, IA4, FV5, FC5, IA5 };
-    int status = TWO_FINGERS_STATUS_OK;
+    two_fingers_status_t status = TWO_FINGERS_STATUS_OK;
 
     if (!two_fingers_within_joints(q, TWO_FINGERS_C(1.0e8))
         || !two_fingers_within_joints(dq, TWO_FINGERS_C(1.0e10))
@@ -128,7 +128,8 @@ int two_fingers_inverse_dynamics_standard(
     TWO_FINGERS_SINCOS(q[3], &t5, &t4);
     two_fingers_real_t t18, t12;
     TWO_FINGERS_SINCOS(q[4], &t18, &t12);
-    const two_fingers_real_t t0 = dq[0] * dq[0];
+    const two_fingers_real_t t0 = dq[0] * dq[0]; /* link wrist: motion */
+    /* link right_1: motion */
     const two_fingers_real_t t1 = TWO_FINGERS_C(0.03446827135542729) * t0
         - TWO_FINGERS_C(0.00607768621834256) * ddq[0];
     const two_fingers_real_t t2 = TWO_FINGERS_C(0.03446827135542729) * ddq[0]
@@ -137,13 +138,13 @@ int two_fingers_inverse_dynamics_standard(
         + TWO_FINGERS_C(0.17364817766693028) * t2;
     const two_fingers_real_t t6 = t4 * t3 + TWO_FINGERS_C(-9.81) * t5;
     const two_fingers_real_t t7 = t4 * dq[0];
-    const two_fingers_real_t t8 = t7 * t7;
+    const two_fingers_real_t t8 = t7 * t7; /* link right_2: motion */
     const two_fingers_real_t t9 = dq[3] * dq[3];
     const two_fingers_real_t t10 = t8 + t9;
     const two_fingers_real_t t11 = t6 + TWO_FINGERS_C(0.045) * t10;
-    const two_fingers_real_t t13 = t5 * t3 + TWO_FINGERS_C(9.81) * t4;
+    const two_fingers_real_t t13 = t5 * t3 + TWO_FINGERS_C(9.81) * t4; /* link right_1: motion */
     const two_fingers_real_t t14 = t5 * dq[0];
-    const two_fingers_real_t t15 = t14 * t7;
+    const two_fingers_real_t t15 = t14 * t7; /* link right_2: motion */
     const two_fingers_real_t t16 = ddq[3] + t15;
     const two_fingers_real_t t17 = t13 + TWO_FINGERS_C(0.045) * t16;
     const two_fingers_real_t t19 = t12 * t11 - t18 * t17;
@@ -156,55 +157,65 @@ int two_fingers_inverse_dynamics_standard(
     const two_fingers_real_t t26 = dq[0] * t25;
     const two_fingers_real_t t27 = t26 * t21;
     const two_fingers_real_t t28 = ddq[3] + ddq[4];
-    const two_fingers_real_t t29 = t27 - t28;
-    const two_fingers_real_t t30 = ddq[0] * t20;
+    const two_fingers_real_t t29 = t27 - t28; /* link right_2: columns */
+    const two_fingers_real_t t30 = ddq[0] * t20; /* link right_2: motion */
+    /* link right_2: force and moment */
     const two_fingers_real_t t31 = t29 * parameters[MY5] - (t22 + t24) * parameters[MX5]
         + t30 * parameters[MZ5];
     const two_fingers_real_t t32 = t31 - t19 * parameters[M5];
-    const two_fingers_real_t t33 = t18 * t11 + t12 * t17;
+    const two_fingers_real_t t33 = t18 * t11 + t12 * t17; /* link right_2: motion */
     const two_fingers_real_t t34 = t26 * t26;
-    const two_fingers_real_t t35 = t28 + t27;
-    const two_fingers_real_t t36 = ddq[0] * t25;
+    const two_fingers_real_t t35 = t28 + t27; /* link right_2: columns */
+    const two_fingers_real_t t36 = ddq[0] * t25; /* link right_2: motion */
+    /* link right_2: force and moment */
     const two_fingers_real_t t37 = t35 * parameters[MX5] - (t34 + t24) * parameters[MY5]
         - t36 * parameters[MZ5];
     const two_fingers_real_t t38 = t33 * parameters[M5] + t37;
-    const two_fingers_real_t t39 = ddq[3] - t15;
-    const two_fingers_real_t t40 = t4 * ddq[0];
+    const two_fingers_real_t t39 = ddq[3] - t15; /* link right_2: motion */
+    const two_fingers_real_t t40 = t4 * ddq[0]; /* link right_1: motion */
+    /* link right_1: force and moment */
     const two_fingers_real_t t41 = t6 * parameters[M4] + (t10 * parameters[MX4] + t39 * parameters[MY4]
         - t40 * parameters[MZ4]);
-    const two_fingers_real_t t42 = t18 * t32 + t12 * t38;
-    const two_fingers_real_t t43 = t14 * t14;
-    const two_fingers_real_t t44 = t5 * ddq[0];
+    const two_fingers_real_t t42 = t18 * t32 + t12 * t38; /* link right_2: what it passes on */
+    const two_fingers_real_t t43 = t14 * t14; /* link right_2: motion */
+    const two_fingers_real_t t44 = t5 * ddq[0]; /* link right_1: motion */
+    /* link right_1: force and moment */
     const two_fingers_real_t t45 = (t43 + t9) * parameters[MY4] - t16 * parameters[MX4]
         + t44 * parameters[MZ4];
+    /* link right_1: what it passes on */
     const two_fingers_real_t t46 = t4 * (t41 + (t18 * t38 - t12 * t32)) + t5 * (t13 * parameters[M4] - t45
         + t42);
-    const two_fingers_real_t t47 = t26 * t23;
+    const two_fingers_real_t t47 = t26 * t23; /* link right_2: motion */
     const two_fingers_real_t t48 = t30 - t47;
-    const two_fingers_real_t t49 = t48 - t47;
-    const two_fingers_real_t t50 = t21 * t23;
+    const two_fingers_real_t t49 = t48 - t47; /* link right_2: columns */
+    const two_fingers_real_t t50 = t21 * t23; /* link right_2: motion */
     const two_fingers_real_t t51 = t36 + t50;
-    const two_fingers_real_t t52 = t50 + t51;
+    const two_fingers_real_t t52 = t50 + t51; /* link right_2: columns */
+    /* link right_2: force and moment */
     const two_fingers_real_t t53 = (t34 + t22) * parameters[MZ5] + (t49 * parameters[MX5]
         - t52 * parameters[MY5]);
+    /* link right_1: motion */
     const two_fingers_real_t t54 = TWO_FINGERS_C(-0.17364817766693028) * t1
         + TWO_FINGERS_C(0.984807753012208) * t2;
     const two_fingers_real_t t55 = dq[3] * t14;
     const two_fingers_real_t t56 = t40 - t55;
-    const two_fingers_real_t t57 = t56 - t55;
+    const two_fingers_real_t t57 = t56 - t55; /* link right_2: motion */
     const two_fingers_real_t t58 = TWO_FINGERS_C(-0.045) * t57 - t54;
-    const two_fingers_real_t t59 = t53 - t58 * parameters[M5];
-    const two_fingers_real_t t60 = dq[3] * t7;
+    const two_fingers_real_t t59 = t53 - t58 * parameters[M5]; /* link right_2: force and moment */
+    const two_fingers_real_t t60 = dq[3] * t7; /* link right_1: motion */
     const two_fingers_real_t t61 = t44 + t60;
-    const two_fingers_real_t t62 = t60 + t61;
+    const two_fingers_real_t t62 = t60 + t61; /* link right_2: motion */
+    /* link right_1: force and moment */
     const two_fingers_real_t t63 = (t43 + t8) * parameters[MZ4] + (t57 * parameters[MX4]
         - t62 * parameters[MY4]);
-    const two_fingers_real_t t64 = t54 * parameters[M4] + t63 + t59;
+    const two_fingers_real_t t64 = t54 * parameters[M4] + t63 + t59; /* link right_2: what it passes on */
+    /* link right_1: what it passes on */
     const two_fingers_real_t
         t65 = TWO_FINGERS_C(0.03446827135542729) * (TWO_FINGERS_C(0.17364817766693028) * t46
         + TWO_FINGERS_C(0.984807753012208) * t64)
         + TWO_FINGERS_C(0.00607768621834256) * (TWO_FINGERS_C(-0.984807753012208) * t46
         + TWO_FINGERS_C(0.17364817766693028) * t64);
+    /* link right_2: force and moment */
     const two_fingers_real_t t66 = t51 * parameters[XX5] - t50 * (parameters[YY5] - parameters[ZZ5])
         + t49 * parameters[XY5];
     const two_fingers_real_t t67 = t58 * parameters[MY5] - t33 * parameters[MZ5] + ((t22
@@ -213,6 +224,7 @@ int two_fingers_inverse_dynamics_standard(
         + t52 * parameters[XY5];
     const two_fingers_real_t t69 = t19 * parameters[MZ5] + t58 * parameters[MX5] + ((t34
         - t24) * parameters[XZ5] - (t68 - t29 * parameters[YZ5]));
+    /* link right_1: force and moment */
     const two_fingers_real_t t70 = t60 * (parameters[ZZ4] - parameters[YY4]) + t61 * parameters[XX4]
         + t57 * parameters[XY4];
     const two_fingers_real_t t71 = (t8 - t9) * parameters[YZ4] + (t70 + t16 * parameters[XZ4])
@@ -221,26 +233,28 @@ int two_fingers_inverse_dynamics_standard(
         + t62 * parameters[XY4];
     const two_fingers_real_t t73 = (t9 - t43) * parameters[XZ4] + (t72 + t39 * parameters[YZ4])
         + (t54 * parameters[MX4] - t6 * parameters[MZ4]);
+    /* link right_2: what it passes on */
     const two_fingers_real_t t74 = t73 + (t18 * t67 - t12 * t69 + TWO_FINGERS_C(0.045) * t59);
+    /* link right_1: what it passes on */
     const two_fingers_real_t t75 = t5 * (t71 + (t12 * t67 + t18 * t69)) + t4 * t74;
-    const two_fingers_real_t t76 = TWO_FINGERS_C(0.03) * t0;
+    const two_fingers_real_t t76 = TWO_FINGERS_C(0.03) * t0; /* link left_1: motion */
     const two_fingers_real_t t79 = t77 * t76 + TWO_FINGERS_C(-9.81) * t78;
     const two_fingers_real_t t80 = t77 * dq[0];
     const two_fingers_real_t t81 = t80 * t80;
     const two_fingers_real_t t82 = dq[1] * dq[1];
-    const two_fingers_real_t t83 = t79 + TWO_FINGERS_C(0.05) * (t81 + t82);
-    const two_fingers_real_t t85 = t78 * t76 + TWO_FINGERS_C(9.81) * t77;
+    const two_fingers_real_t t83 = t79 + TWO_FINGERS_C(0.05) * (t81 + t82); /* link left_2: motion */
+    const two_fingers_real_t t85 = t78 * t76 + TWO_FINGERS_C(9.81) * t77; /* link left_1: motion */
     const two_fingers_real_t t86 = t78 * dq[0];
     const two_fingers_real_t t87 = t86 * t80;
-    const two_fingers_real_t t88 = ddq[1] + t87;
+    const two_fingers_real_t t88 = ddq[1] + t87; /* link left_2: motion */
     const two_fingers_real_t t89 = t85 + TWO_FINGERS_C(0.05) * t88;
     const two_fingers_real_t t91 = t84 * t83 + t90 * t89;
-    const two_fingers_real_t t92 = t77 * ddq[0];
+    const two_fingers_real_t t92 = t77 * ddq[0]; /* link left_1: motion */
     const two_fingers_real_t t93 = dq[1] * t86;
     const two_fingers_real_t t94 = t92 - t93;
-    const two_fingers_real_t t95 = t94 - t93;
-    const two_fingers_real_t t96 = TWO_FINGERS_C(0.03) * ddq[0];
-    const two_fingers_real_t t97 = t96 - TWO_FINGERS_C(-0.05) * t95;
+    const two_fingers_real_t t95 = t94 - t93; /* link left_2: motion */
+    const two_fingers_real_t t96 = TWO_FINGERS_C(0.03) * ddq[0]; /* link left_1: motion */
+    const two_fingers_real_t t97 = t96 - TWO_FINGERS_C(-0.05) * t95; /* link left_2: motion */
     const two_fingers_real_t t98 = t78 * t90 + t77 * t84;
     const two_fingers_real_t t99 = ddq[0] * t98;
     const two_fingers_real_t t100 = t77 * t90 - t78 * t84;
@@ -252,90 +266,108 @@ int two_fingers_inverse_dynamics_standard(
     const two_fingers_real_t t106 = dq[0] * t98;
     const two_fingers_real_t t107 = t106 * t102;
     const two_fingers_real_t t108 = t105 - t107;
-    const two_fingers_real_t t109 = t108 - t107;
+    const two_fingers_real_t t109 = t108 - t107; /* link left_2: columns */
+    /* link left_2: force and moment */
     const two_fingers_real_t t110 = t104 * parameters[XX3] - t103 * (parameters[YY3] - parameters[ZZ3])
         + t109 * parameters[XY3];
-    const two_fingers_real_t t111 = t106 * t101;
+    const two_fingers_real_t t111 = t106 * t101; /* link left_2: motion */
     const two_fingers_real_t t112 = ddq[1] + ddq[2];
-    const two_fingers_real_t t113 = t112 + t111;
-    const two_fingers_real_t t114 = t101 * t101;
+    const two_fingers_real_t t113 = t112 + t111; /* link left_2: columns */
+    const two_fingers_real_t t114 = t101 * t101; /* link left_2: motion */
     const two_fingers_real_t t115 = t102 * t102;
+    /* link left_2: force and moment */
     const two_fingers_real_t t116 = (t114 - t115) * parameters[YZ3] + (t110 + t113 * parameters[XZ3])
         - (t97 * parameters[MY3] + t91 * parameters[MZ3]);
-    const two_fingers_real_t t117 = t90 * t83 - t84 * t89;
-    const two_fingers_real_t t118 = t103 + t104;
+    const two_fingers_real_t t117 = t90 * t83 - t84 * t89; /* link left_2: motion */
+    const two_fingers_real_t t118 = t103 + t104; /* link left_2: columns */
+    /* link left_2: force and moment */
     const two_fingers_real_t t119 = t107 * (parameters[XX3] - parameters[ZZ3]) + t108 * parameters[YY3]
         + t118 * parameters[XY3];
-    const two_fingers_real_t t120 = t111 - t112;
-    const two_fingers_real_t t121 = t106 * t106;
+    const two_fingers_real_t t120 = t111 - t112; /* link left_2: columns */
+    const two_fingers_real_t t121 = t106 * t106; /* link left_2: motion */
+    /* link left_2: force and moment */
     const two_fingers_real_t t122 = t117 * parameters[MZ3] - t97 * parameters[MX3] + ((t121
         - t115) * parameters[XZ3] - (t119 - t120 * parameters[YZ3]));
-    const two_fingers_real_t t123 = dq[1] * t80;
+    const two_fingers_real_t t123 = dq[1] * t80; /* link left_1: motion */
     const two_fingers_real_t t124 = t78 * ddq[0];
     const two_fingers_real_t t125 = t124 + t123;
+    /* link left_1: force and moment */
     const two_fingers_real_t t126 = t123 * (parameters[ZZ2] - parameters[YY2]) + t125 * parameters[XX2]
         + t95 * parameters[XY2];
     const two_fingers_real_t t127 = (t81 - t82) * parameters[YZ2] + (t126 + t88 * parameters[XZ2])
         - (t85 * parameters[MZ2] + t96 * parameters[MY2]);
+    /* link left_2: force and moment */
     const two_fingers_real_t t128 = (t121 + t114) * parameters[MZ3] + (t109 * parameters[MX3]
         - t118 * parameters[MY3]);
     const two_fingers_real_t t129 = t97 * parameters[M3] + t128;
-    const two_fingers_real_t t130 = t123 + t125;
+    const two_fingers_real_t t130 = t123 + t125; /* link left_2: motion */
+    /* link left_1: force and moment */
     const two_fingers_real_t t131 = t93 * (parameters[XX2] - parameters[ZZ2]) + t94 * parameters[YY2]
         + t130 * parameters[XY2];
-    const two_fingers_real_t t132 = t86 * t86;
+    const two_fingers_real_t t132 = t86 * t86; /* link left_1: motion */
+    /* link left_1: force and moment */
     const two_fingers_real_t t133 = (t82 - t132) * parameters[XZ2] + (t131 + (ddq[1]
         - t87) * parameters[YZ2]);
+    /* link left_2: what it passes on */
     const two_fingers_real_t t134 = t133 + (t96 * parameters[MX2] - t79 * parameters[MZ2]) + (t84 * t116
         - t90 * t122 + TWO_FINGERS_C(0.05) * t129);
+    /* link left_1: what it passes on */
     const two_fingers_real_t t135 = t78 * (t127 + (t90 * t116 + t84 * t122)) + t77 * t134;
+    /* link left_1: force and moment */
     const two_fingers_real_t t136 = (t132 + t81) * parameters[MZ2] + (t95 * parameters[MX2]
         - t130 * parameters[MY2]);
+    /* link left_1: what it passes on */
     const two_fingers_real_t t137 = ddq[0] * parameters[ZZ1] + (t75 + t65) + (t135
         + TWO_FINGERS_C(0.03) * (t96 * parameters[M2] + t136 + t129));
-    const two_fingers_real_t t138 = two_fingers_sign(dq[0]);
+    const two_fingers_real_t t138 = two_fingers_sign(dq[0]); /* joint wrist: coulomb_friction */
     const two_fingers_real_t t139 = TWO_FINGERS_C(60.0) * dq[0] * parameters[FV1] + t138 * parameters[FC1]
         + TWO_FINGERS_C(60.0) * ddq[0] * parameters[IA1];
     out[0] = TWO_FINGERS_C(25.0) * t139 + TWO_FINGERS_C(0.4166666666666667) * t137;
+    /* link left_2: force and moment */
     const two_fingers_real_t t140 = t120 * parameters[MY3] - (t114 + t115) * parameters[MX3]
         + t105 * parameters[MZ3];
     const two_fingers_real_t t141 = t113 * parameters[MX3] - (t121 + t115) * parameters[MY3]
         - t99 * parameters[MZ3];
+    /* link left_2: what it passes on */
     const two_fingers_real_t t142 = t84 * (t140 - t117 * parameters[M3]) + t90 * (t91 * parameters[M3]
         + t141);
+    /* link left_2: force and moment */
     const two_fingers_real_t t143 = t112 * parameters[ZZ3] - t111 * (parameters[XX3] - parameters[YY3])
         + t105 * parameters[YZ3];
     const two_fingers_real_t t144 = t91 * parameters[MX3] + t117 * parameters[MY3] + ((t121
         - t114) * parameters[XY3] + (t143 + t99 * parameters[XZ3]));
+    /* link left_1: force and moment */
     const two_fingers_real_t t145 = t87 * (parameters[YY2] - parameters[XX2]) + ddq[1] * parameters[ZZ2]
         + t92 * parameters[YZ2];
     const two_fingers_real_t t146 = t85 * parameters[MX2] + t79 * parameters[MY2] + ((t132
         - t81) * parameters[XY2] + (t145 + t124 * parameters[XZ2]));
-    const two_fingers_real_t t147 = two_fingers_sign(dq[1]);
+    const two_fingers_real_t t147 = two_fingers_sign(dq[1]); /* joint left_1: coulomb_friction */
     const two_fingers_real_t t148 = TWO_FINGERS_C(30.0) * dq[1] * parameters[FV2] + t147 * parameters[FC2]
         + TWO_FINGERS_C(30.0) * ddq[1] * parameters[IA2];
     const two_fingers_real_t t149 = TWO_FINGERS_C(50.0) * t148 + TWO_FINGERS_C(1.6666666666666667) * (t146
         + (t144 + TWO_FINGERS_C(0.05) * t142));
     out[1] = t149;
-    const two_fingers_real_t t150 = two_fingers_sign(dq[2]);
+    const two_fingers_real_t t150 = two_fingers_sign(dq[2]); /* joint left_2: coulomb_friction */
     const two_fingers_real_t t151 = TWO_FINGERS_C(30.0) * dq[2] * parameters[FV3] + t150 * parameters[FC3]
         + TWO_FINGERS_C(30.0) * ddq[2] * parameters[IA3];
     out[2] = TWO_FINGERS_C(50.0) * t151 + TWO_FINGERS_C(1.6666666666666667) * t144;
+    /* link right_2: force and moment */
     const two_fingers_real_t t152 = t28 * parameters[ZZ5] - t27 * (parameters[XX5] - parameters[YY5])
         + t30 * parameters[YZ5];
     const two_fingers_real_t t153 = t33 * parameters[MX5] + t19 * parameters[MY5] + ((t34
         - t22) * parameters[XY5] + (t152 + t36 * parameters[XZ5]));
+    /* link right_1: force and moment */
     const two_fingers_real_t t154 = t15 * (parameters[YY4] - parameters[XX4]) + ddq[3] * parameters[ZZ4]
         + t40 * parameters[YZ4];
     const two_fingers_real_t t155 = (t43 - t8) * parameters[XY4] + (t154 + t44 * parameters[XZ4])
         + (t13 * parameters[MX4] + t6 * parameters[MY4]);
-    const two_fingers_real_t t156 = two_fingers_sign(dq[3]);
+    const two_fingers_real_t t156 = two_fingers_sign(dq[3]); /* joint right_1: coulomb_friction */
     const two_fingers_real_t t157 = TWO_FINGERS_C(30.0) * dq[3] * parameters[FV4] + t156 * parameters[FC4]
         + TWO_FINGERS_C(30.0) * ddq[3] * parameters[IA4];
     const two_fingers_real_t t158 = TWO_FINGERS_C(50.0) * t157 + TWO_FINGERS_C(1.6666666666666667) * (t155
         + (t153 + TWO_FINGERS_C(0.045) * t42));
     out[3] = t158;
-    const two_fingers_real_t t159 = two_fingers_sign(dq[4]);
+    const two_fingers_real_t t159 = two_fingers_sign(dq[4]); /* joint right_2: coulomb_friction */
     const two_fingers_real_t t160 = TWO_FINGERS_C(30.0) * dq[4] * parameters[FV5] + t159 * parameters[FC5]
         + TWO_FINGERS_C(30.0) * ddq[4] * parameters[IA5];
     out[4] = TWO_FINGERS_C(50.0) * t160 + TWO_FINGERS_C(1.6666666666666667) * t153;

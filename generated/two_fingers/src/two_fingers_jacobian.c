@@ -21,15 +21,15 @@
  */
 #include "two_fingers_private.h"
 
-#if TWO_FINGERS_GENERATION != 0x01C0F172UL
+#if TWO_FINGERS_GENERATION != 0x24AB78D7UL
 #error "two_fingers.h and two_fingers_jacobian.c are of different generations: generate the arm again"
 #endif
 
-int two_fingers_jacobian(
+two_fingers_status_t two_fingers_jacobian(
     const two_fingers_real_t q[TWO_FINGERS_N_JOINTS],
     two_fingers_real_t out[6 * TWO_FINGERS_N_JOINTS])
 {
-    int status = TWO_FINGERS_STATUS_OK;
+    two_fingers_status_t status = TWO_FINGERS_STATUS_OK;
 
     if (!two_fingers_within_joints(q, TWO_FINGERS_C(1.0e8))) {
         status |= TWO_FINGERS_STATUS_INPUT;
@@ -43,13 +43,15 @@ int two_fingers_jacobian(
     TWO_FINGERS_SINCOS(q[0], &t0, &t1);
     two_fingers_real_t t6, t3;
     TWO_FINGERS_SINCOS(q[3], &t6, &t3);
+    /* link right_1: pose */
     const two_fingers_real_t t2 = TWO_FINGERS_C(0.17364817766693028) * t1
         + TWO_FINGERS_C(-0.984807753012208) * t0;
-    const two_fingers_real_t t4 = TWO_FINGERS_C(0.045) * (t3 * t2);
+    const two_fingers_real_t t4 = TWO_FINGERS_C(0.045) * (t3 * t2); /* link right_2: pose */
     out[0] = TWO_FINGERS_C(0.03446827135542729) * t0 + TWO_FINGERS_C(-0.00607768621834256) * t1 - t4;
+    /* link right_1: pose */
     const two_fingers_real_t t5 = TWO_FINGERS_C(0.984807753012208) * t1
         + TWO_FINGERS_C(0.17364817766693028) * t0;
-    const two_fingers_real_t t7 = TWO_FINGERS_C(0.045) * t6;
+    const two_fingers_real_t t7 = TWO_FINGERS_C(0.045) * t6; /* link right_2: pose */
     out[3] = t5 * t7;
     const two_fingers_real_t t8 = TWO_FINGERS_C(-0.045) * (t3 * t5);
     out[5] = TWO_FINGERS_C(-0.03446827135542729) * t1 + TWO_FINGERS_C(-0.00607768621834256) * t0 + t8;

@@ -67,11 +67,11 @@
  */
 #include "two_fingers_private.h"
 
-#if TWO_FINGERS_GENERATION != 0x01C0F172UL
+#if TWO_FINGERS_GENERATION != 0x24AB78D7UL
 #error "two_fingers.h and two_fingers_mass_matrix.c are of different generations: generate the arm again"
 #endif
 
-int two_fingers_mass_matrix(
+two_fingers_status_t two_fingers_mass_matrix(
     const two_fingers_real_t q[TWO_FINGERS_N_JOINTS],
     const two_fingers_real_t parameters[TWO_FINGERS_N_PARAMETERS],
     two_fingers_real_t out[TWO_FINGERS_N_JOINTS * TWO_FINGERS_N_JOINTS])
@@ -79,7 +79,7 @@ int two_fingers_mass_matrix(
     enum { ZZ1R = 0, XX2R, XY2, XZ2R, YZ2, ZZ2R, MX2R, MY2, XX3R, XY3, XZ3, YZ3, ZZ3, MX3, MY3, XX4R, XY4,
         XZ4R, YZ4, ZZ4R, MX4R, MY4, XX5R, XY5, XZ5, YZ5, ZZ5, MX5, MY5, FV1, FC1, FV2, FC2, FV3, FC3, IA3,
         FV4, FC4, FV5, FC5, IA5 };
-    int status = TWO_FINGERS_STATUS_OK;
+    two_fingers_status_t status = TWO_FINGERS_STATUS_OK;
 
     if (!two_fingers_within_joints(q, TWO_FINGERS_C(1.0e8))
         || !TWO_FINGERS_PARAMETERS_USABLE(two_fingers_within(parameters, 41, TWO_FINGERS_C(1.0e18)))) {
@@ -98,46 +98,61 @@ int two_fingers_mass_matrix(
     TWO_FINGERS_SINCOS(q[3], &t9, &t7);
     two_fingers_real_t t1, t0;
     TWO_FINGERS_SINCOS(q[4], &t1, &t0);
+    /* link right_2: inertia of it and all beyond */
     const two_fingers_real_t t2 = t0 * parameters[XX5R] - parameters[XY5] * (TWO_FINGERS_C(2.0) * t1);
     const two_fingers_real_t t3 = t0 * t2;
+    /* link right_2: column of the mass matrix */
     const two_fingers_real_t t4 = t0 * parameters[MX5] - t1 * parameters[MY5];
-    const two_fingers_real_t t5 = TWO_FINGERS_C(0.09) * t4;
+    const two_fingers_real_t t5 = TWO_FINGERS_C(0.09) * t4; /* link right_2: inertia of it and all beyond */
     const two_fingers_real_t t6 = parameters[XX4R] + t3;
+    /* link right_2: column of the mass matrix */
     const two_fingers_real_t t8 = t0 * parameters[MY5] + t1 * parameters[MX5];
+    /* link right_1: inertia of it and all beyond */
     const two_fingers_real_t t10 = (parameters[XY4] + (parameters[XY5] + t1 * t2
         + TWO_FINGERS_C(-0.045) * t8)) * (TWO_FINGERS_C(2.0) * t9);
     const two_fingers_real_t t11 = t7 * (t7 * (parameters[XX5R] - t3 + t5 - t6) + t10);
-    const two_fingers_real_t t12 = parameters[MY4] + t8;
+    const two_fingers_real_t t12 = parameters[MY4] + t8; /* link right_2: inertia of it and all beyond */
     const two_fingers_real_t t13 = parameters[MX4R] + t4;
+    /* link right_1: inertia of it and all beyond */
     const two_fingers_real_t t14 = t6 + t11 + TWO_FINGERS_C(0.06999999999999999) * (t7 * t13 - t9 * t12);
+    /* link left_2: inertia of it and all beyond */
     const two_fingers_real_t t17 = t15 * parameters[XX3R] - parameters[XY3] * (TWO_FINGERS_C(2.0) * t16);
     const two_fingers_real_t t18 = t15 * t17;
+    /* link left_2: column of the mass matrix */
     const two_fingers_real_t t19 = t15 * parameters[MX3] - t16 * parameters[MY3];
-    const two_fingers_real_t t20 = TWO_FINGERS_C(0.1) * t19;
+    const two_fingers_real_t t20 = TWO_FINGERS_C(0.1) * t19; /* link left_2: inertia of it and all beyond */
     const two_fingers_real_t t21 = parameters[XX2R] + t18;
+    /* link left_2: column of the mass matrix */
     const two_fingers_real_t t23 = t15 * parameters[MY3] + t16 * parameters[MX3];
+    /* link left_1: inertia of it and all beyond */
     const two_fingers_real_t t25 = (parameters[XY2] + (parameters[XY3] + t16 * t17
         + TWO_FINGERS_C(-0.05) * t23)) * (TWO_FINGERS_C(2.0) * t24);
     const two_fingers_real_t t26 = t22 * (t22 * (parameters[XX3R] - t18 + t20 - t21) + t25);
     const two_fingers_real_t t27 = TWO_FINGERS_C(0.06) * (t22 * (parameters[MX2R] + t19)
         - t24 * (parameters[MY2] + t23));
     out[0] = parameters[ZZ1R] + t14 + (t21 + t26 + t27);
+    /* link left_2: column of the mass matrix */
     const two_fingers_real_t t28 = t15 * parameters[XZ3] - t16 * parameters[YZ3];
     const two_fingers_real_t t29 = t16 * parameters[XZ3] + t15 * parameters[YZ3];
+    /* link left_1: column of the mass matrix */
     const two_fingers_real_t t30 = t24 * (parameters[XZ2R] + t28) + t22 * (parameters[YZ2] + t29);
     out[1] = t30;
-    const two_fingers_real_t t31 = t24 * t28 + t22 * t29;
+    const two_fingers_real_t t31 = t24 * t28 + t22 * t29; /* link left_2: column of the mass matrix */
     out[2] = t31;
+    /* link right_2: column of the mass matrix */
     const two_fingers_real_t t32 = t0 * parameters[XZ5] - t1 * parameters[YZ5];
     const two_fingers_real_t t33 = t1 * parameters[XZ5] + t0 * parameters[YZ5];
+    /* link right_1: column of the mass matrix */
     const two_fingers_real_t t34 = t9 * (parameters[XZ4R] + t32) + t7 * (parameters[YZ4] + t33)
         + TWO_FINGERS_C(8.673617379884035e-19) * (t7 * t12 + t9 * t13);
     out[3] = t34;
+    /* link right_2: column of the mass matrix */
     const two_fingers_real_t t35 = t9 * t32 + t7 * t33 + TWO_FINGERS_C(8.673617379884035e-19) * (t7 * t8
         + t9 * t4);
     out[4] = t35;
     out[5] = t30;
     out[6] = parameters[ZZ2R] + (parameters[ZZ3] + t20);
+    /* link left_2: column of the mass matrix */
     const two_fingers_real_t t36 = parameters[ZZ3] + TWO_FINGERS_C(0.05) * t19;
     out[7] = t36;
     out[10] = t31;
@@ -145,6 +160,7 @@ int two_fingers_mass_matrix(
     out[12] = parameters[ZZ3] + TWO_FINGERS_C(9.0e2) * parameters[IA3];
     out[15] = t34;
     out[18] = parameters[ZZ4R] + (parameters[ZZ5] + t5);
+    /* link right_2: column of the mass matrix */
     const two_fingers_real_t t37 = parameters[ZZ5] + TWO_FINGERS_C(0.045) * t4;
     out[19] = t37;
     out[20] = t35;

@@ -25,11 +25,11 @@
  */
 #include "two_fingers_private.h"
 
-#if TWO_FINGERS_GENERATION != 0x01C0F172UL
+#if TWO_FINGERS_GENERATION != 0x24AB78D7UL
 #error "two_fingers.h and two_fingers_motor_from_joint.c are of different generations: generate the arm again"
 #endif
 
-int two_fingers_motor_from_joint(
+two_fingers_status_t two_fingers_motor_from_joint(
     const two_fingers_real_t q[TWO_FINGERS_N_JOINTS],
     const two_fingers_real_t dq[TWO_FINGERS_N_JOINTS],
     const two_fingers_real_t ddq[TWO_FINGERS_N_JOINTS],
@@ -37,7 +37,7 @@ int two_fingers_motor_from_joint(
     two_fingers_real_t dq_m[TWO_FINGERS_N_JOINTS],
     two_fingers_real_t ddq_m[TWO_FINGERS_N_JOINTS])
 {
-    int status = TWO_FINGERS_STATUS_OK;
+    two_fingers_status_t status = TWO_FINGERS_STATUS_OK;
 
     if (!two_fingers_within_joints(q, TWO_FINGERS_C(1.0e8))
         || !two_fingers_within_joints(dq, TWO_FINGERS_C(1.0e10))

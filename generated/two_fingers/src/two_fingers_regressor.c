@@ -6,7 +6,7 @@
  * Arm two_fingers, description a6b389943be5f64e.
  * SPDX-License-Identifier: 0BSD
  *
- * Operations: 310 (200 mul, 110 add, 0 neg), 8 trig, 5 other.
+ * Operations: 310 (200 mul, 110 add, 0 neg), 8 trig, 5 other calls (sign, select and the like).
  *
  * @param[in]   q    [5]    [rad]                          joint coordinates; norm at most 10000
  * @param[in]   dq   [5]    [rad/s]                        joint velocities; norm at most 100000
@@ -31,17 +31,17 @@
  */
 #include "two_fingers_private.h"
 
-#if TWO_FINGERS_GENERATION != 0x01C0F172UL
+#if TWO_FINGERS_GENERATION != 0x24AB78D7UL
 #error "two_fingers.h and two_fingers_regressor.c are of different generations: generate the arm again"
 #endif
 
-int two_fingers_regressor(
+two_fingers_status_t two_fingers_regressor(
     const two_fingers_real_t q[TWO_FINGERS_N_JOINTS],
     const two_fingers_real_t dq[TWO_FINGERS_N_JOINTS],
     const two_fingers_real_t ddq[TWO_FINGERS_N_JOINTS],
     two_fingers_real_t out[TWO_FINGERS_N_JOINTS * TWO_FINGERS_N_PARAMETERS])
 {
-    int status = TWO_FINGERS_STATUS_OK;
+    two_fingers_status_t status = TWO_FINGERS_STATUS_OK;
 
     if (!two_fingers_within_joints(q, TWO_FINGERS_C(1.0e8))
         || !two_fingers_within_joints(dq, TWO_FINGERS_C(1.0e10))
@@ -62,26 +62,28 @@ int two_fingers_regressor(
     two_fingers_real_t t86, t87;
     TWO_FINGERS_SINCOS(q[4], &t86, &t87);
     out[0] = TWO_FINGERS_C(0.4166666666666667) * ddq[0];
-    const two_fingers_real_t t1 = t0 * dq[0];
+    const two_fingers_real_t t1 = t0 * dq[0]; /* link left_1: motion */
     const two_fingers_real_t t2 = dq[1] * t1;
     const two_fingers_real_t t4 = t3 * ddq[0];
     const two_fingers_real_t t5 = t2 + t4;
+    /* link left_1: velocities by those of the joints */
     const two_fingers_real_t t6 = TWO_FINGERS_C(0.4166666666666667) * t3;
-    const two_fingers_real_t t7 = t3 * dq[0];
+    const two_fingers_real_t t7 = t3 * dq[0]; /* link left_1: motion */
     const two_fingers_real_t t8 = dq[1] * t7;
+    /* link left_1: velocities by those of the joints */
     const two_fingers_real_t t9 = TWO_FINGERS_C(0.4166666666666667) * t0;
-    const two_fingers_real_t t10 = t8 * t9;
+    const two_fingers_real_t t10 = t8 * t9; /* link left_1: columns */
     out[1] = t5 * t6 + t10;
-    const two_fingers_real_t t11 = t7 * t1;
+    const two_fingers_real_t t11 = t7 * t1; /* link left_1: motion */
     out[42] = TWO_FINGERS_C(-1.6666666666666667) * t11;
-    const two_fingers_real_t t12 = t2 + t5;
-    const two_fingers_real_t t13 = t0 * ddq[0];
-    const two_fingers_real_t t14 = t13 - t8 - t8;
+    const two_fingers_real_t t12 = t2 + t5; /* link left_2: motion */
+    const two_fingers_real_t t13 = t0 * ddq[0]; /* link left_1: motion */
+    const two_fingers_real_t t14 = t13 - t8 - t8; /* link left_2: motion */
     out[2] = t12 * t9 + t14 * t6;
-    const two_fingers_real_t t15 = t7 * t7;
+    const two_fingers_real_t t15 = t7 * t7; /* link left_1: motion */
     const two_fingers_real_t t16 = t1 * t1;
     out[43] = TWO_FINGERS_C(1.6666666666666667) * (t15 - t16);
-    const two_fingers_real_t t17 = ddq[1] + t11;
+    const two_fingers_real_t t17 = ddq[1] + t11; /* link left_2: motion */
     const two_fingers_real_t t18 = dq[1] * dq[1];
     out[3] = t17 * t6 + (t18 - t15) * t9;
     out[44] = TWO_FINGERS_C(1.6666666666666667) * t4;
@@ -89,7 +91,7 @@ int two_fingers_regressor(
     out[45] = TWO_FINGERS_C(1.6666666666666667) * t13;
     out[5] = t2 * t6 - t10;
     out[46] = TWO_FINGERS_C(1.6666666666666667) * ddq[1];
-    const two_fingers_real_t t19 = TWO_FINGERS_C(-0.03) * ddq[0];
+    const two_fingers_real_t t19 = TWO_FINGERS_C(-0.03) * ddq[0]; /* link left_1: motion */
     out[6] = TWO_FINGERS_C(0.0125) * t14 - t19 * t9;
     const two_fingers_real_t t20 = dq[0] * dq[0];
     const two_fingers_real_t t21 = TWO_FINGERS_C(0.03) * t20;
@@ -98,40 +100,40 @@ int two_fingers_regressor(
     out[7] = TWO_FINGERS_C(-0.0125) * t12 + t19 * t6;
     const two_fingers_real_t t23 = t0 * t21 + TWO_FINGERS_C(-9.81) * t3;
     out[48] = TWO_FINGERS_C(1.6666666666666667) * t23;
-    const two_fingers_real_t t26 = t0 * t25 - t3 * t24;
+    const two_fingers_real_t t26 = t0 * t25 - t3 * t24; /* link left_2: motion */
     const two_fingers_real_t t27 = dq[0] * t26;
     const two_fingers_real_t t28 = dq[1] + dq[2];
     const two_fingers_real_t t29 = t28 * t27;
     const two_fingers_real_t t30 = t3 * t25 + t0 * t24;
     const two_fingers_real_t t31 = ddq[0] * t30;
     const two_fingers_real_t t32 = t29 + t31;
-    const two_fingers_real_t t33 = t25 * t6 + t24 * t9;
-    const two_fingers_real_t t34 = dq[0] * t30;
+    const two_fingers_real_t t33 = t25 * t6 + t24 * t9; /* link left_2: velocities by those of the joints */
+    const two_fingers_real_t t34 = dq[0] * t30; /* link left_2: motion */
     const two_fingers_real_t t35 = t28 * t34;
-    const two_fingers_real_t t36 = t25 * t9 - t24 * t6;
-    const two_fingers_real_t t37 = t35 * t36;
+    const two_fingers_real_t t36 = t25 * t9 - t24 * t6; /* link left_2: velocities by those of the joints */
+    const two_fingers_real_t t37 = t35 * t36; /* link left_2: columns */
     out[8] = t32 * t33 + t37;
-    const two_fingers_real_t t38 = t34 * t27;
+    const two_fingers_real_t t38 = t34 * t27; /* link left_2: motion */
     const two_fingers_real_t t39 = TWO_FINGERS_C(-1.6666666666666667) * t38;
     out[49] = t39;
     out[90] = t39;
-    const two_fingers_real_t t40 = t29 + t32;
-    const two_fingers_real_t t41 = ddq[0] * t26;
-    const two_fingers_real_t t42 = t41 - t35 - t35;
+    const two_fingers_real_t t40 = t29 + t32; /* link left_2: force and moment */
+    const two_fingers_real_t t41 = ddq[0] * t26; /* link left_2: motion */
+    const two_fingers_real_t t42 = t41 - t35 - t35; /* link left_2: force and moment */
     out[9] = t40 * t36 + t42 * t33;
-    const two_fingers_real_t t43 = t34 * t34;
+    const two_fingers_real_t t43 = t34 * t34; /* link left_2: motion */
     const two_fingers_real_t t44 = t27 * t27;
     const two_fingers_real_t t45 = TWO_FINGERS_C(1.6666666666666667) * (t43 - t44);
     out[50] = t45;
     out[91] = t45;
     const two_fingers_real_t t46 = ddq[1] + ddq[2];
-    const two_fingers_real_t t47 = t38 + t46;
-    const two_fingers_real_t t48 = t28 * t28;
+    const two_fingers_real_t t47 = t38 + t46; /* link left_2: force and moment */
+    const two_fingers_real_t t48 = t28 * t28; /* link left_2: motion */
     out[10] = t47 * t33 - (t43 - t48) * t36;
     const two_fingers_real_t t49 = TWO_FINGERS_C(1.6666666666666667) * t31;
     out[51] = t49;
     out[92] = t49;
-    const two_fingers_real_t t50 = t38 - t46;
+    const two_fingers_real_t t50 = t38 - t46; /* link left_2: force and moment */
     out[11] = (t44 - t48) * t33 - t50 * t36;
     const two_fingers_real_t t51 = TWO_FINGERS_C(1.6666666666666667) * t41;
     out[52] = t51;
@@ -140,12 +142,14 @@ int two_fingers_regressor(
     const two_fingers_real_t t52 = TWO_FINGERS_C(1.6666666666666667) * t46;
     out[53] = t52;
     out[94] = t52;
+    /* link left_2: velocities by those of the joints */
     const two_fingers_real_t t53 = TWO_FINGERS_C(0.020833333333333336) * t0 + TWO_FINGERS_C(0.0125);
-    const two_fingers_real_t t54 = t19 + TWO_FINGERS_C(-0.05) * t14;
+    const two_fingers_real_t t54 = t19 + TWO_FINGERS_C(-0.05) * t14; /* link left_2: motion */
     out[13] = t42 * t53 - t54 * t36;
     const two_fingers_real_t t55 = t23 + TWO_FINGERS_C(0.05) * (t18 + t16);
     const two_fingers_real_t t56 = t22 + TWO_FINGERS_C(0.05) * t17;
     const two_fingers_real_t t57 = TWO_FINGERS_C(1.6666666666666667) * (t24 * t55 + t25 * t56);
+    /* link left_2: velocities by those of the joints */
     const two_fingers_real_t t58 = TWO_FINGERS_C(-0.08333333333333334) * t24;
     const two_fingers_real_t t59 = TWO_FINGERS_C(-0.08333333333333334) * t25;
     out[54] = t57 + ((t48 + t44) * t58 - t47 * t59);
@@ -154,21 +158,23 @@ int two_fingers_regressor(
     const two_fingers_real_t t60 = TWO_FINGERS_C(1.6666666666666667) * (t25 * t55 - t24 * t56);
     out[55] = t60 + ((t48 + t43) * t59 - t50 * t58);
     out[96] = t60;
-    const two_fingers_real_t t62 = t61 * dq[0];
+    const two_fingers_real_t t62 = t61 * dq[0]; /* link right_1: motion */
     const two_fingers_real_t t63 = dq[3] * t62;
     const two_fingers_real_t t65 = t64 * ddq[0];
     const two_fingers_real_t t66 = t63 + t65;
+    /* link right_1: velocities by those of the joints */
     const two_fingers_real_t t67 = TWO_FINGERS_C(0.4166666666666667) * t64;
-    const two_fingers_real_t t68 = t64 * dq[0];
+    const two_fingers_real_t t68 = t64 * dq[0]; /* link right_1: motion */
     const two_fingers_real_t t69 = dq[3] * t68;
+    /* link right_1: velocities by those of the joints */
     const two_fingers_real_t t70 = TWO_FINGERS_C(0.4166666666666667) * t61;
-    const two_fingers_real_t t71 = t69 * t70;
+    const two_fingers_real_t t71 = t69 * t70; /* link right_1: columns */
     out[15] = t66 * t67 + t71;
-    const two_fingers_real_t t72 = t68 * t62;
+    const two_fingers_real_t t72 = t68 * t62; /* link right_2: motion */
     out[138] = TWO_FINGERS_C(-1.6666666666666667) * t72;
     const two_fingers_real_t t73 = t63 + t66;
-    const two_fingers_real_t t74 = t61 * ddq[0];
-    const two_fingers_real_t t75 = t74 - t69 - t69;
+    const two_fingers_real_t t74 = t61 * ddq[0]; /* link right_1: motion */
+    const two_fingers_real_t t75 = t74 - t69 - t69; /* link right_2: motion */
     out[16] = t73 * t70 + t75 * t67;
     const two_fingers_real_t t76 = t68 * t68;
     const two_fingers_real_t t77 = t62 * t62;
@@ -181,6 +187,7 @@ int two_fingers_regressor(
     out[141] = TWO_FINGERS_C(1.6666666666666667) * t74;
     out[19] = t63 * t67 - t71;
     out[142] = TWO_FINGERS_C(1.6666666666666667) * ddq[3];
+    /* link right_1: motion */
     const two_fingers_real_t t80 = TWO_FINGERS_C(0.03446827135542729) * t20
         + TWO_FINGERS_C(-0.00607768621834256) * ddq[0];
     const two_fingers_real_t t81 = TWO_FINGERS_C(0.00607768621834256) * t20
@@ -195,40 +202,42 @@ int two_fingers_regressor(
     out[21] = TWO_FINGERS_C(-0.014583333333333334) * t73 + t82 * t67;
     const two_fingers_real_t t85 = TWO_FINGERS_C(-9.81) * t64 + t61 * t83;
     out[144] = TWO_FINGERS_C(1.6666666666666667) * t85;
-    const two_fingers_real_t t88 = t61 * t87 - t64 * t86;
+    const two_fingers_real_t t88 = t61 * t87 - t64 * t86; /* link right_2: motion */
     const two_fingers_real_t t89 = dq[0] * t88;
     const two_fingers_real_t t90 = dq[3] + dq[4];
     const two_fingers_real_t t91 = t90 * t89;
     const two_fingers_real_t t92 = t64 * t87 + t61 * t86;
     const two_fingers_real_t t93 = ddq[0] * t92;
     const two_fingers_real_t t94 = t91 + t93;
+    /* link right_2: velocities by those of the joints */
     const two_fingers_real_t t95 = t87 * t67 + t86 * t70;
-    const two_fingers_real_t t96 = dq[0] * t92;
+    const two_fingers_real_t t96 = dq[0] * t92; /* link right_2: motion */
     const two_fingers_real_t t97 = t90 * t96;
+    /* link right_2: velocities by those of the joints */
     const two_fingers_real_t t98 = t86 * t67 - t87 * t70;
-    const two_fingers_real_t t99 = t97 * t98;
+    const two_fingers_real_t t99 = t97 * t98; /* link right_2: columns */
     out[22] = t94 * t95 - t99;
-    const two_fingers_real_t t100 = t96 * t89;
+    const two_fingers_real_t t100 = t96 * t89; /* link right_2: motion */
     const two_fingers_real_t t101 = TWO_FINGERS_C(-1.6666666666666667) * t100;
     out[145] = t101;
     out[186] = t101;
-    const two_fingers_real_t t102 = t91 + t94;
-    const two_fingers_real_t t103 = ddq[0] * t88;
-    const two_fingers_real_t t104 = t103 - t97 - t97;
+    const two_fingers_real_t t102 = t91 + t94; /* link right_2: force and moment */
+    const two_fingers_real_t t103 = ddq[0] * t88; /* link right_2: motion */
+    const two_fingers_real_t t104 = t103 - t97 - t97; /* link right_2: force and moment */
     out[23] = t104 * t95 - t102 * t98;
-    const two_fingers_real_t t105 = t96 * t96;
+    const two_fingers_real_t t105 = t96 * t96; /* link right_2: motion */
     const two_fingers_real_t t106 = t89 * t89;
     const two_fingers_real_t t107 = TWO_FINGERS_C(1.6666666666666667) * (t105 - t106);
     out[146] = t107;
     out[187] = t107;
     const two_fingers_real_t t108 = ddq[3] + ddq[4];
-    const two_fingers_real_t t109 = t100 + t108;
-    const two_fingers_real_t t110 = t90 * t90;
+    const two_fingers_real_t t109 = t100 + t108; /* link right_2: force and moment */
+    const two_fingers_real_t t110 = t90 * t90; /* link right_2: motion */
     out[24] = t109 * t95 + (t105 - t110) * t98;
     const two_fingers_real_t t111 = TWO_FINGERS_C(1.6666666666666667) * t93;
     out[147] = t111;
     out[188] = t111;
-    const two_fingers_real_t t112 = t100 - t108;
+    const two_fingers_real_t t112 = t100 - t108; /* link right_2: force and moment */
     out[25] = t112 * t98 + (t106 - t110) * t95;
     const two_fingers_real_t t113 = TWO_FINGERS_C(1.6666666666666667) * t103;
     out[148] = t113;
@@ -237,12 +246,14 @@ int two_fingers_regressor(
     const two_fingers_real_t t114 = TWO_FINGERS_C(1.6666666666666667) * t108;
     out[149] = t114;
     out[190] = t114;
+    /* link right_2: velocities by those of the joints */
     const two_fingers_real_t t115 = TWO_FINGERS_C(0.01875) * t61 + TWO_FINGERS_C(0.014583333333333334);
-    const two_fingers_real_t t116 = t82 + TWO_FINGERS_C(-0.045) * t75;
+    const two_fingers_real_t t116 = t82 + TWO_FINGERS_C(-0.045) * t75; /* link right_2: motion */
     out[27] = t104 * t115 + t116 * t98;
     const two_fingers_real_t t117 = TWO_FINGERS_C(0.045) * (t79 + t77) + t85;
     const two_fingers_real_t t118 = t84 + TWO_FINGERS_C(0.045) * t78;
     const two_fingers_real_t t119 = TWO_FINGERS_C(1.6666666666666667) * (t86 * t117 + t87 * t118);
+    /* link right_2: velocities by those of the joints */
     const two_fingers_real_t t120 = TWO_FINGERS_C(-0.075) * t86;
     const two_fingers_real_t t121 = TWO_FINGERS_C(-0.075) * t87;
     out[150] = t119 + ((t110 + t106) * t120 - t109 * t121);
@@ -252,20 +263,20 @@ int two_fingers_regressor(
     out[151] = t122 + ((t110 + t105) * t121 - t112 * t120);
     out[192] = t122;
     out[29] = TWO_FINGERS_C(1.5e3) * dq[0];
-    const two_fingers_real_t t123 = two_fingers_sign(dq[0]);
+    const two_fingers_real_t t123 = two_fingers_sign(dq[0]); /* joint wrist: coulomb_friction */
     out[30] = TWO_FINGERS_C(25.0) * t123;
     out[72] = TWO_FINGERS_C(1.5e3) * dq[1];
-    const two_fingers_real_t t124 = two_fingers_sign(dq[1]);
+    const two_fingers_real_t t124 = two_fingers_sign(dq[1]); /* joint left_1: coulomb_friction */
     out[73] = TWO_FINGERS_C(50.0) * t124;
     out[115] = TWO_FINGERS_C(1.5e3) * dq[2];
-    const two_fingers_real_t t125 = two_fingers_sign(dq[2]);
+    const two_fingers_real_t t125 = two_fingers_sign(dq[2]); /* joint left_2: coulomb_friction */
     out[116] = TWO_FINGERS_C(50.0) * t125;
     out[117] = TWO_FINGERS_C(1.5e3) * ddq[2];
     out[159] = TWO_FINGERS_C(1.5e3) * dq[3];
-    const two_fingers_real_t t126 = two_fingers_sign(dq[3]);
+    const two_fingers_real_t t126 = two_fingers_sign(dq[3]); /* joint right_1: coulomb_friction */
     out[160] = TWO_FINGERS_C(50.0) * t126;
     out[202] = TWO_FINGERS_C(1.5e3) * dq[4];
-    const two_fingers_real_t t127 = two_fingers_sign(dq[4]);
+    const two_fingers_real_t t127 = two_fingers_sign(dq[4]); /* joint right_2: coulomb_friction */
     out[203] = TWO_FINGERS_C(50.0) * t127;
     out[204] = TWO_FINGERS_C(1.5e3) * ddq[4];
     /* always zero */

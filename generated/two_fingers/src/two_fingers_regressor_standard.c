@@ -6,7 +6,7 @@
  * Arm two_fingers, description a6b389943be5f64e.
  * SPDX-License-Identifier: 0BSD
  *
- * Operations: 343 (218 mul, 117 add, 8 neg), 8 trig, 5 other.
+ * Operations: 343 (218 mul, 117 add, 8 neg), 8 trig, 5 other calls (sign, select and the like).
  *
  * @param[in]   q    [5]    [rad]                          joint coordinates; norm at most 10000
  * @param[in]   dq   [5]    [rad/s]                        joint velocities; norm at most 100000
@@ -33,17 +33,17 @@
  */
 #include "two_fingers_private.h"
 
-#if TWO_FINGERS_GENERATION != 0x01C0F172UL
+#if TWO_FINGERS_GENERATION != 0x24AB78D7UL
 #error "two_fingers.h and two_fingers_regressor_standard.c are of different generations: generate the arm again"
 #endif
 
-int two_fingers_regressor_standard(
+two_fingers_status_t two_fingers_regressor_standard(
     const two_fingers_real_t q[TWO_FINGERS_N_JOINTS],
     const two_fingers_real_t dq[TWO_FINGERS_N_JOINTS],
     const two_fingers_real_t ddq[TWO_FINGERS_N_JOINTS],
     two_fingers_real_t out[TWO_FINGERS_N_JOINTS * TWO_FINGERS_N_STANDARD_PARAMETERS])
 {
-    int status = TWO_FINGERS_STATUS_OK;
+    two_fingers_status_t status = TWO_FINGERS_STATUS_OK;
 
     if (!two_fingers_within_joints(q, TWO_FINGERS_C(1.0e8))
         || !two_fingers_within_joints(dq, TWO_FINGERS_C(1.0e10))
@@ -65,30 +65,32 @@ int two_fingers_regressor_standard(
     TWO_FINGERS_SINCOS(q[4], &t99, &t98);
     const two_fingers_real_t t0 = TWO_FINGERS_C(0.4166666666666667) * ddq[0];
     out[5] = t0;
-    const two_fingers_real_t t2 = t1 * ddq[0];
+    const two_fingers_real_t t2 = t1 * ddq[0]; /* link left_1: motion */
     const two_fingers_real_t t4 = t3 * dq[0];
     const two_fingers_real_t t5 = dq[1] * t4;
     const two_fingers_real_t t6 = t2 + t5;
+    /* link left_1: velocities by those of the joints */
     const two_fingers_real_t t7 = TWO_FINGERS_C(0.4166666666666667) * t1;
-    const two_fingers_real_t t8 = t1 * dq[0];
+    const two_fingers_real_t t8 = t1 * dq[0]; /* link left_1: motion */
     const two_fingers_real_t t9 = dq[1] * t8;
+    /* link left_1: velocities by those of the joints */
     const two_fingers_real_t t10 = TWO_FINGERS_C(0.4166666666666667) * t3;
-    const two_fingers_real_t t11 = t9 * t10;
+    const two_fingers_real_t t11 = t9 * t10; /* link left_1: columns */
     const two_fingers_real_t t12 = t6 * t7 + t11;
     out[10] = t12;
-    const two_fingers_real_t t13 = t8 * t4;
+    const two_fingers_real_t t13 = t8 * t4; /* link left_1: motion */
     const two_fingers_real_t t14 = TWO_FINGERS_C(1.6666666666666667) * t13;
     out[75] = -t14;
-    const two_fingers_real_t t15 = t5 + t6;
-    const two_fingers_real_t t16 = t3 * ddq[0];
-    const two_fingers_real_t t17 = t16 - t9 - t9;
+    const two_fingers_real_t t15 = t5 + t6; /* link left_2: motion */
+    const two_fingers_real_t t16 = t3 * ddq[0]; /* link left_1: motion */
+    const two_fingers_real_t t17 = t16 - t9 - t9; /* link left_2: motion */
     out[11] = t15 * t10 + t17 * t7;
-    const two_fingers_real_t t18 = t8 * t8;
+    const two_fingers_real_t t18 = t8 * t8; /* link left_1: motion */
     const two_fingers_real_t t19 = t4 * t4;
     out[76] = TWO_FINGERS_C(1.6666666666666667) * (t18 - t19);
-    const two_fingers_real_t t20 = ddq[1] + t13;
-    const two_fingers_real_t t21 = dq[1] * dq[1];
-    const two_fingers_real_t t22 = t20 * t7 + (t21 - t18) * t10;
+    const two_fingers_real_t t20 = ddq[1] + t13; /* link left_2: motion */
+    const two_fingers_real_t t21 = dq[1] * dq[1]; /* link left_1: motion */
+    const two_fingers_real_t t22 = t20 * t7 + (t21 - t18) * t10; /* link left_1: columns */
     out[12] = t22;
     out[77] = TWO_FINGERS_C(1.6666666666666667) * t2;
     out[13] = t0 - t12;
@@ -97,51 +99,51 @@ int two_fingers_regressor_standard(
     out[79] = TWO_FINGERS_C(1.6666666666666667) * t16;
     out[15] = t5 * t7 - t11;
     out[80] = TWO_FINGERS_C(1.6666666666666667) * ddq[1];
-    const two_fingers_real_t t23 = TWO_FINGERS_C(-0.03) * ddq[0];
+    const two_fingers_real_t t23 = TWO_FINGERS_C(-0.03) * ddq[0]; /* link left_1: motion */
     out[16] = TWO_FINGERS_C(0.0125) * t17 - t23 * t10;
-    const two_fingers_real_t t24 = dq[0] * dq[0];
-    const two_fingers_real_t t25 = TWO_FINGERS_C(0.03) * t24;
+    const two_fingers_real_t t24 = dq[0] * dq[0]; /* link wrist: motion */
+    const two_fingers_real_t t25 = TWO_FINGERS_C(0.03) * t24; /* link left_1: motion */
     const two_fingers_real_t t26 = t1 * t25 + TWO_FINGERS_C(9.81) * t3;
     out[81] = TWO_FINGERS_C(1.6666666666666667) * t26;
     out[17] = TWO_FINGERS_C(-0.0125) * t15 + t23 * t7;
     const two_fingers_real_t t27 = t3 * t25 + TWO_FINGERS_C(-9.81) * t1;
     out[82] = TWO_FINGERS_C(1.6666666666666667) * t27;
     out[19] = TWO_FINGERS_C(0.000375) * ddq[0];
-    const two_fingers_real_t t30 = t1 * t28 + t3 * t29;
+    const two_fingers_real_t t30 = t1 * t28 + t3 * t29; /* link left_2: motion */
     const two_fingers_real_t t31 = ddq[0] * t30;
     const two_fingers_real_t t32 = t3 * t28 - t1 * t29;
     const two_fingers_real_t t33 = dq[0] * t32;
     const two_fingers_real_t t34 = dq[1] + dq[2];
     const two_fingers_real_t t35 = t33 * t34;
     const two_fingers_real_t t36 = t31 + t35;
-    const two_fingers_real_t t37 = t28 * t7 + t29 * t10;
-    const two_fingers_real_t t38 = dq[0] * t30;
+    const two_fingers_real_t t37 = t28 * t7 + t29 * t10; /* link left_2: velocities by those of the joints */
+    const two_fingers_real_t t38 = dq[0] * t30; /* link left_2: motion */
     const two_fingers_real_t t39 = t38 * t34;
-    const two_fingers_real_t t40 = t28 * t10 - t29 * t7;
-    const two_fingers_real_t t41 = t39 * t40;
+    const two_fingers_real_t t40 = t28 * t10 - t29 * t7; /* link left_2: velocities by those of the joints */
+    const two_fingers_real_t t41 = t39 * t40; /* link left_2: columns */
     out[20] = t36 * t37 + t41;
-    const two_fingers_real_t t42 = t38 * t33;
+    const two_fingers_real_t t42 = t38 * t33; /* link left_2: motion */
     const two_fingers_real_t t43 = TWO_FINGERS_C(-1.6666666666666667) * t42;
     out[85] = t43;
     out[150] = t43;
-    const two_fingers_real_t t44 = t35 + t36;
-    const two_fingers_real_t t45 = ddq[0] * t32;
+    const two_fingers_real_t t44 = t35 + t36; /* link left_2: columns */
+    const two_fingers_real_t t45 = ddq[0] * t32; /* link left_2: motion */
     const two_fingers_real_t t46 = t45 - t39;
-    const two_fingers_real_t t47 = t46 - t39;
+    const two_fingers_real_t t47 = t46 - t39; /* link left_2: columns */
     out[21] = t44 * t40 + t47 * t37;
-    const two_fingers_real_t t48 = t38 * t38;
+    const two_fingers_real_t t48 = t38 * t38; /* link left_2: motion */
     const two_fingers_real_t t49 = t33 * t33;
     const two_fingers_real_t t50 = TWO_FINGERS_C(1.6666666666666667) * (t48 - t49);
     out[86] = t50;
     out[151] = t50;
     const two_fingers_real_t t51 = ddq[1] + ddq[2];
-    const two_fingers_real_t t52 = t51 + t42;
-    const two_fingers_real_t t53 = t34 * t34;
+    const two_fingers_real_t t52 = t51 + t42; /* link left_2: columns */
+    const two_fingers_real_t t53 = t34 * t34; /* link left_2: motion */
     out[22] = t52 * t37 - (t48 - t53) * t40;
     const two_fingers_real_t t54 = TWO_FINGERS_C(1.6666666666666667) * t31;
     out[87] = t54;
     out[152] = t54;
-    const two_fingers_real_t t55 = t35 * t37;
+    const two_fingers_real_t t55 = t35 * t37; /* link left_2: columns */
     out[23] = t46 * t40 - t55;
     out[88] = -t43;
     out[153] = -t43;
@@ -154,19 +156,21 @@ int two_fingers_regressor_standard(
     const two_fingers_real_t t58 = TWO_FINGERS_C(1.6666666666666667) * t51;
     out[90] = t58;
     out[155] = t58;
+    /* link left_2: velocities by those of the joints */
     const two_fingers_real_t t59 = TWO_FINGERS_C(0.020833333333333336) * t3 + TWO_FINGERS_C(0.0125);
-    const two_fingers_real_t t60 = t23 + TWO_FINGERS_C(-0.05) * t17;
+    const two_fingers_real_t t60 = t23 + TWO_FINGERS_C(-0.05) * t17; /* link left_2: motion */
     out[26] = t47 * t59 - t60 * t40;
     const two_fingers_real_t t61 = t27 + TWO_FINGERS_C(0.05) * (t19 + t21);
     const two_fingers_real_t t62 = t26 + TWO_FINGERS_C(0.05) * t20;
     const two_fingers_real_t t63 = t29 * t61 + t28 * t62;
     const two_fingers_real_t t64 = TWO_FINGERS_C(1.6666666666666667) * t63;
+    /* link left_2: velocities by those of the joints */
     const two_fingers_real_t t65 = TWO_FINGERS_C(-0.08333333333333334) * t29;
     const two_fingers_real_t t66 = TWO_FINGERS_C(0.08333333333333334) * t28;
     out[91] = t64 + ((t49 + t53) * t65 + t52 * t66);
     out[156] = t64;
     out[27] = t60 * t37 - t44 * t59;
-    const two_fingers_real_t t67 = t28 * t61 - t29 * t62;
+    const two_fingers_real_t t67 = t28 * t61 - t29 * t62; /* link left_2: motion */
     const two_fingers_real_t t68 = TWO_FINGERS_C(1.6666666666666667) * t67;
     out[92] = t68 - (t56 * t65 + (t48 + t53) * t66);
     out[157] = t68;
@@ -174,30 +178,32 @@ int two_fingers_regressor_standard(
     out[93] = TWO_FINGERS_C(-0.08333333333333334) * t2;
     out[29] = -(t60 * t59);
     out[94] = t67 * t65 + t63 * t66;
-    const two_fingers_real_t t70 = t69 * ddq[0];
+    const two_fingers_real_t t70 = t69 * ddq[0]; /* link right_1: motion */
     const two_fingers_real_t t72 = t71 * dq[0];
     const two_fingers_real_t t73 = dq[3] * t72;
     const two_fingers_real_t t74 = t70 + t73;
+    /* link right_1: velocities by those of the joints */
     const two_fingers_real_t t75 = TWO_FINGERS_C(0.4166666666666667) * t69;
-    const two_fingers_real_t t76 = t69 * dq[0];
+    const two_fingers_real_t t76 = t69 * dq[0]; /* link right_1: motion */
     const two_fingers_real_t t77 = dq[3] * t76;
+    /* link right_1: velocities by those of the joints */
     const two_fingers_real_t t78 = TWO_FINGERS_C(0.4166666666666667) * t71;
-    const two_fingers_real_t t79 = t77 * t78;
+    const two_fingers_real_t t79 = t77 * t78; /* link right_1: columns */
     const two_fingers_real_t t80 = t74 * t75 + t79;
     out[30] = t80;
-    const two_fingers_real_t t81 = t76 * t72;
+    const two_fingers_real_t t81 = t76 * t72; /* link right_2: motion */
     const two_fingers_real_t t82 = TWO_FINGERS_C(1.6666666666666667) * t81;
     out[225] = -t82;
     const two_fingers_real_t t83 = t73 + t74;
-    const two_fingers_real_t t84 = t71 * ddq[0];
-    const two_fingers_real_t t85 = t84 - t77 - t77;
+    const two_fingers_real_t t84 = t71 * ddq[0]; /* link right_1: motion */
+    const two_fingers_real_t t85 = t84 - t77 - t77; /* link right_2: motion */
     out[31] = t83 * t78 + t85 * t75;
     const two_fingers_real_t t86 = t76 * t76;
     const two_fingers_real_t t87 = t72 * t72;
     out[226] = TWO_FINGERS_C(1.6666666666666667) * (t86 - t87);
     const two_fingers_real_t t88 = ddq[3] + t81;
     const two_fingers_real_t t89 = dq[3] * dq[3];
-    const two_fingers_real_t t90 = t88 * t75 + (t89 - t86) * t78;
+    const two_fingers_real_t t90 = t88 * t75 + (t89 - t86) * t78; /* link right_1: columns */
     out[32] = t90;
     out[227] = TWO_FINGERS_C(1.6666666666666667) * t70;
     out[33] = t0 - t80;
@@ -206,6 +212,7 @@ int two_fingers_regressor_standard(
     out[229] = TWO_FINGERS_C(1.6666666666666667) * t84;
     out[35] = t73 * t75 - t79;
     out[230] = TWO_FINGERS_C(1.6666666666666667) * ddq[3];
+    /* link right_1: motion */
     const two_fingers_real_t t91 = TWO_FINGERS_C(0.03446827135542729) * t24
         + TWO_FINGERS_C(-0.00607768621834256) * ddq[0];
     const two_fingers_real_t t92 = TWO_FINGERS_C(0.03446827135542729) * ddq[0]
@@ -223,41 +230,43 @@ int two_fingers_regressor_standard(
     const two_fingers_real_t t97 = TWO_FINGERS_C(-7.228014483236697e-19) * ddq[0];
     out[38] = t97;
     out[39] = TWO_FINGERS_C(-0.014583333333333334) * t93;
-    const two_fingers_real_t t100 = t69 * t98 + t71 * t99;
+    const two_fingers_real_t t100 = t69 * t98 + t71 * t99; /* link right_2: motion */
     const two_fingers_real_t t101 = ddq[0] * t100;
     const two_fingers_real_t t102 = t71 * t98 - t69 * t99;
     const two_fingers_real_t t103 = dq[0] * t102;
     const two_fingers_real_t t104 = dq[3] + dq[4];
     const two_fingers_real_t t105 = t103 * t104;
     const two_fingers_real_t t106 = t101 + t105;
+    /* link right_2: velocities by those of the joints */
     const two_fingers_real_t t107 = t98 * t75 + t99 * t78;
-    const two_fingers_real_t t108 = dq[0] * t100;
+    const two_fingers_real_t t108 = dq[0] * t100; /* link right_2: motion */
     const two_fingers_real_t t109 = t108 * t104;
+    /* link right_2: velocities by those of the joints */
     const two_fingers_real_t t110 = t99 * t75 - t98 * t78;
-    const two_fingers_real_t t111 = t109 * t110;
+    const two_fingers_real_t t111 = t109 * t110; /* link right_2: columns */
     out[40] = t106 * t107 - t111;
-    const two_fingers_real_t t112 = t108 * t103;
+    const two_fingers_real_t t112 = t108 * t103; /* link right_2: motion */
     const two_fingers_real_t t113 = TWO_FINGERS_C(-1.6666666666666667) * t112;
     out[235] = t113;
     out[300] = t113;
-    const two_fingers_real_t t114 = t105 + t106;
-    const two_fingers_real_t t115 = ddq[0] * t102;
+    const two_fingers_real_t t114 = t105 + t106; /* link right_2: columns */
+    const two_fingers_real_t t115 = ddq[0] * t102; /* link right_2: motion */
     const two_fingers_real_t t116 = t115 - t109;
-    const two_fingers_real_t t117 = t116 - t109;
+    const two_fingers_real_t t117 = t116 - t109; /* link right_2: columns */
     out[41] = t117 * t107 - t114 * t110;
-    const two_fingers_real_t t118 = t108 * t108;
+    const two_fingers_real_t t118 = t108 * t108; /* link right_2: motion */
     const two_fingers_real_t t119 = t103 * t103;
     const two_fingers_real_t t120 = TWO_FINGERS_C(1.6666666666666667) * (t118 - t119);
     out[236] = t120;
     out[301] = t120;
     const two_fingers_real_t t121 = ddq[3] + ddq[4];
-    const two_fingers_real_t t122 = t121 + t112;
-    const two_fingers_real_t t123 = t104 * t104;
+    const two_fingers_real_t t122 = t121 + t112; /* link right_2: columns */
+    const two_fingers_real_t t123 = t104 * t104; /* link right_2: motion */
     out[42] = t122 * t107 + (t118 - t123) * t110;
     const two_fingers_real_t t124 = TWO_FINGERS_C(1.6666666666666667) * t101;
     out[237] = t124;
     out[302] = t124;
-    const two_fingers_real_t t125 = t105 * t107;
+    const two_fingers_real_t t125 = t105 * t107; /* link right_2: columns */
     out[43] = -(t116 * t110 + t125);
     out[238] = -t113;
     out[303] = -t113;
@@ -270,19 +279,21 @@ int two_fingers_regressor_standard(
     const two_fingers_real_t t128 = TWO_FINGERS_C(1.6666666666666667) * t121;
     out[240] = t128;
     out[305] = t128;
+    /* link right_2: velocities by those of the joints */
     const two_fingers_real_t t129 = TWO_FINGERS_C(-0.01875) * t71 - TWO_FINGERS_C(0.014583333333333334);
-    const two_fingers_real_t t130 = t93 + TWO_FINGERS_C(-0.045) * t85;
+    const two_fingers_real_t t130 = t93 + TWO_FINGERS_C(-0.045) * t85; /* link right_2: motion */
     out[46] = t130 * t110 - t117 * t129;
     const two_fingers_real_t t131 = t96 + TWO_FINGERS_C(0.045) * (t87 + t89);
     const two_fingers_real_t t132 = t95 + TWO_FINGERS_C(0.045) * t88;
     const two_fingers_real_t t133 = t99 * t131 + t98 * t132;
     const two_fingers_real_t t134 = TWO_FINGERS_C(1.6666666666666667) * t133;
+    /* link right_2: velocities by those of the joints */
     const two_fingers_real_t t135 = TWO_FINGERS_C(-0.075) * t99;
     const two_fingers_real_t t136 = TWO_FINGERS_C(0.075) * t98;
     out[241] = t134 + ((t119 + t123) * t135 + t122 * t136);
     out[306] = t134;
     out[47] = t114 * t129 + t130 * t107;
-    const two_fingers_real_t t137 = t98 * t131 - t99 * t132;
+    const two_fingers_real_t t137 = t98 * t131 - t99 * t132; /* link right_2: motion */
     const two_fingers_real_t t138 = TWO_FINGERS_C(1.6666666666666667) * t137;
     out[242] = t138 - (t126 * t135 + (t118 + t123) * t136);
     out[307] = t138;
@@ -291,23 +302,23 @@ int two_fingers_regressor_standard(
     out[49] = t130 * t129;
     out[244] = t137 * t135 + t133 * t136;
     out[50] = TWO_FINGERS_C(1.5e3) * dq[0];
-    const two_fingers_real_t t139 = two_fingers_sign(dq[0]);
+    const two_fingers_real_t t139 = two_fingers_sign(dq[0]); /* joint wrist: coulomb_friction */
     out[51] = TWO_FINGERS_C(25.0) * t139;
     out[52] = TWO_FINGERS_C(1.5e3) * ddq[0];
     out[118] = TWO_FINGERS_C(1.5e3) * dq[1];
-    const two_fingers_real_t t140 = two_fingers_sign(dq[1]);
+    const two_fingers_real_t t140 = two_fingers_sign(dq[1]); /* joint left_1: coulomb_friction */
     out[119] = TWO_FINGERS_C(50.0) * t140;
     out[120] = TWO_FINGERS_C(1.5e3) * ddq[1];
     out[186] = TWO_FINGERS_C(1.5e3) * dq[2];
-    const two_fingers_real_t t141 = two_fingers_sign(dq[2]);
+    const two_fingers_real_t t141 = two_fingers_sign(dq[2]); /* joint left_2: coulomb_friction */
     out[187] = TWO_FINGERS_C(50.0) * t141;
     out[188] = TWO_FINGERS_C(1.5e3) * ddq[2];
     out[254] = TWO_FINGERS_C(1.5e3) * dq[3];
-    const two_fingers_real_t t142 = two_fingers_sign(dq[3]);
+    const two_fingers_real_t t142 = two_fingers_sign(dq[3]); /* joint right_1: coulomb_friction */
     out[255] = TWO_FINGERS_C(50.0) * t142;
     out[256] = TWO_FINGERS_C(1.5e3) * ddq[3];
     out[322] = TWO_FINGERS_C(1.5e3) * dq[4];
-    const two_fingers_real_t t143 = two_fingers_sign(dq[4]);
+    const two_fingers_real_t t143 = two_fingers_sign(dq[4]); /* joint right_2: coulomb_friction */
     out[323] = TWO_FINGERS_C(50.0) * t143;
     out[324] = TWO_FINGERS_C(1.5e3) * ddq[4];
     /* always zero */

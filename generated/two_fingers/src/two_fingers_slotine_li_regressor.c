@@ -6,7 +6,7 @@
  * Arm two_fingers, description a6b389943be5f64e.
  * SPDX-License-Identifier: 0BSD
  *
- * Operations: 356 (232 mul, 124 add, 0 neg), 8 trig, 5 other.
+ * Operations: 356 (232 mul, 124 add, 0 neg), 8 trig, 5 other calls (sign, select and the like).
  *
  * @param[in]   q      [5]    [rad]                          joint coordinates; norm at most 10000
  * @param[in]   dq     [5]    [rad/s]                        joint velocities; norm at most 100000
@@ -33,18 +33,18 @@
  */
 #include "two_fingers_private.h"
 
-#if TWO_FINGERS_GENERATION != 0x01C0F172UL
+#if TWO_FINGERS_GENERATION != 0x24AB78D7UL
 #error "two_fingers.h and two_fingers_slotine_li_regressor.c are of different generations: generate the arm again"
 #endif
 
-int two_fingers_slotine_li_regressor(
+two_fingers_status_t two_fingers_slotine_li_regressor(
     const two_fingers_real_t q[TWO_FINGERS_N_JOINTS],
     const two_fingers_real_t dq[TWO_FINGERS_N_JOINTS],
     const two_fingers_real_t dq_r[TWO_FINGERS_N_JOINTS],
     const two_fingers_real_t ddq_r[TWO_FINGERS_N_JOINTS],
     two_fingers_real_t out[TWO_FINGERS_N_JOINTS * TWO_FINGERS_N_PARAMETERS])
 {
-    int status = TWO_FINGERS_STATUS_OK;
+    two_fingers_status_t status = TWO_FINGERS_STATUS_OK;
 
     if (!two_fingers_within_joints(q, TWO_FINGERS_C(1.0e8))
         || !two_fingers_within_joints(dq, TWO_FINGERS_C(1.0e10))
@@ -66,30 +66,32 @@ int two_fingers_slotine_li_regressor(
     two_fingers_real_t t96, t97;
     TWO_FINGERS_SINCOS(q[4], &t96, &t97);
     out[0] = TWO_FINGERS_C(0.4166666666666667) * ddq_r[0];
-    const two_fingers_real_t t1 = t0 * dq[0];
+    const two_fingers_real_t t1 = t0 * dq[0]; /* link left_1: motion */
     const two_fingers_real_t t2 = t0 * dq_r[0];
     const two_fingers_real_t t3 = TWO_FINGERS_C(0.5) * (t1 * dq_r[1] + dq[1] * t2);
     const two_fingers_real_t t5 = t4 * ddq_r[0];
     const two_fingers_real_t t6 = t5 + t3;
+    /* link left_1: velocities by those of the joints */
     const two_fingers_real_t t7 = TWO_FINGERS_C(0.4166666666666667) * t4;
-    const two_fingers_real_t t8 = t4 * dq[0];
+    const two_fingers_real_t t8 = t4 * dq[0]; /* link left_1: motion */
     const two_fingers_real_t t9 = t4 * dq_r[0];
     const two_fingers_real_t t10 = TWO_FINGERS_C(-0.5) * (t8 * dq_r[1] + dq[1] * t9);
+    /* link left_1: velocities by those of the joints */
     const two_fingers_real_t t11 = TWO_FINGERS_C(0.4166666666666667) * t0;
-    const two_fingers_real_t t12 = t11 * t10;
+    const two_fingers_real_t t12 = t11 * t10; /* link left_1: columns */
     out[1] = t7 * t6 - t12;
-    const two_fingers_real_t t13 = t8 * t2 + t1 * t9;
+    const two_fingers_real_t t13 = t8 * t2 + t1 * t9; /* link left_1: motion */
     out[42] = TWO_FINGERS_C(-0.8333333333333334) * t13;
-    const two_fingers_real_t t14 = t3 + t6;
-    const two_fingers_real_t t15 = t0 * ddq_r[0];
-    const two_fingers_real_t t16 = t10 + (t15 + t10);
+    const two_fingers_real_t t14 = t3 + t6; /* link left_2: motion */
+    const two_fingers_real_t t15 = t0 * ddq_r[0]; /* link left_1: motion */
+    const two_fingers_real_t t16 = t10 + (t15 + t10); /* link left_2: motion */
     out[2] = t11 * t14 + t7 * t16;
-    const two_fingers_real_t t17 = t8 * t9;
+    const two_fingers_real_t t17 = t8 * t9; /* link left_1: motion */
     const two_fingers_real_t t18 = t1 * t2;
     out[43] = TWO_FINGERS_C(1.6666666666666667) * (t17 - t18);
     const two_fingers_real_t t19 = TWO_FINGERS_C(0.5) * t13;
-    const two_fingers_real_t t20 = ddq_r[1] + t19;
-    const two_fingers_real_t t21 = dq[1] * dq_r[1];
+    const two_fingers_real_t t20 = ddq_r[1] + t19; /* link left_2: motion */
+    const two_fingers_real_t t21 = dq[1] * dq_r[1]; /* link left_1: motion */
     out[3] = t7 * t20 + t11 * (t21 - t17);
     out[44] = TWO_FINGERS_C(1.6666666666666667) * t5;
     out[4] = t11 * (ddq_r[1] - t19) + t7 * (t18 - t21);
@@ -98,14 +100,14 @@ int two_fingers_slotine_li_regressor(
     out[46] = TWO_FINGERS_C(1.6666666666666667) * ddq_r[1];
     const two_fingers_real_t t22 = TWO_FINGERS_C(-0.03) * ddq_r[0];
     out[6] = TWO_FINGERS_C(0.0125) * t16 - t11 * t22;
-    const two_fingers_real_t t23 = dq[0] * dq_r[0];
-    const two_fingers_real_t t24 = TWO_FINGERS_C(0.03) * t23;
+    const two_fingers_real_t t23 = dq[0] * dq_r[0]; /* link wrist: motion */
+    const two_fingers_real_t t24 = TWO_FINGERS_C(0.03) * t23; /* link left_1: motion */
     const two_fingers_real_t t25 = TWO_FINGERS_C(9.81) * t0 + t4 * t24;
     out[47] = TWO_FINGERS_C(1.6666666666666667) * t25;
     out[7] = TWO_FINGERS_C(-0.0125) * t14 + t7 * t22;
     const two_fingers_real_t t26 = TWO_FINGERS_C(-9.81) * t4 + t0 * t24;
     out[48] = TWO_FINGERS_C(1.6666666666666667) * t26;
-    const two_fingers_real_t t29 = t0 * t28 - t4 * t27;
+    const two_fingers_real_t t29 = t0 * t28 - t4 * t27; /* link left_2: motion */
     const two_fingers_real_t t30 = dq[0] * t29;
     const two_fingers_real_t t31 = dq_r[1] + dq_r[2];
     const two_fingers_real_t t32 = t29 * dq_r[0];
@@ -114,32 +116,32 @@ int two_fingers_slotine_li_regressor(
     const two_fingers_real_t t35 = t4 * t28 + t0 * t27;
     const two_fingers_real_t t36 = t35 * ddq_r[0];
     const two_fingers_real_t t37 = t36 + t34;
-    const two_fingers_real_t t38 = t28 * t7 + t27 * t11;
-    const two_fingers_real_t t39 = dq[0] * t35;
+    const two_fingers_real_t t38 = t28 * t7 + t27 * t11; /* link left_2: velocities by those of the joints */
+    const two_fingers_real_t t39 = dq[0] * t35; /* link left_2: motion */
     const two_fingers_real_t t40 = t35 * dq_r[0];
     const two_fingers_real_t t41 = TWO_FINGERS_C(-0.5) * (t39 * t31 + t33 * t40);
-    const two_fingers_real_t t42 = t27 * t7 - t28 * t11;
-    const two_fingers_real_t t43 = t42 * t41;
+    const two_fingers_real_t t42 = t27 * t7 - t28 * t11; /* link left_2: velocities by those of the joints */
+    const two_fingers_real_t t43 = t42 * t41; /* link left_2: columns */
     out[8] = t38 * t37 + t43;
-    const two_fingers_real_t t44 = t39 * t32 + t30 * t40;
-    const two_fingers_real_t t45 = TWO_FINGERS_C(-0.8333333333333334) * t44;
+    const two_fingers_real_t t44 = t39 * t32 + t30 * t40; /* link left_2: motion */
+    const two_fingers_real_t t45 = TWO_FINGERS_C(-0.8333333333333334) * t44; /* link left_2: columns */
     out[49] = t45;
     out[90] = t45;
     const two_fingers_real_t t46 = t34 + t37;
-    const two_fingers_real_t t47 = t29 * ddq_r[0];
-    const two_fingers_real_t t48 = t41 + (t47 + t41);
+    const two_fingers_real_t t47 = t29 * ddq_r[0]; /* link left_2: motion */
+    const two_fingers_real_t t48 = t41 + (t47 + t41); /* link left_2: columns */
     out[9] = t38 * t48 - t42 * t46;
-    const two_fingers_real_t t49 = t39 * t40;
+    const two_fingers_real_t t49 = t39 * t40; /* link left_2: motion */
     const two_fingers_real_t t50 = t30 * t32;
-    const two_fingers_real_t t51 = TWO_FINGERS_C(1.6666666666666667) * (t49 - t50);
+    const two_fingers_real_t t51 = TWO_FINGERS_C(1.6666666666666667) * (t49 - t50); /* link left_2: columns */
     out[50] = t51;
     out[91] = t51;
-    const two_fingers_real_t t52 = TWO_FINGERS_C(0.5) * t44;
+    const two_fingers_real_t t52 = TWO_FINGERS_C(0.5) * t44; /* link left_2: motion */
     const two_fingers_real_t t53 = ddq_r[1] + ddq_r[2];
-    const two_fingers_real_t t54 = t53 + t52;
-    const two_fingers_real_t t55 = t33 * t31;
+    const two_fingers_real_t t54 = t53 + t52; /* link left_2: columns */
+    const two_fingers_real_t t55 = t33 * t31; /* link left_2: motion */
     out[10] = t38 * t54 + t42 * (t49 - t55);
-    const two_fingers_real_t t56 = TWO_FINGERS_C(1.6666666666666667) * t36;
+    const two_fingers_real_t t56 = TWO_FINGERS_C(1.6666666666666667) * t36; /* link left_2: columns */
     out[51] = t56;
     out[92] = t56;
     const two_fingers_real_t t57 = t52 - t53;
@@ -151,13 +153,16 @@ int two_fingers_slotine_li_regressor(
     const two_fingers_real_t t59 = TWO_FINGERS_C(1.6666666666666667) * t53;
     out[53] = t59;
     out[94] = t59;
+    /* link left_2: velocities by those of the joints */
     const two_fingers_real_t t60 = TWO_FINGERS_C(0.020833333333333336) * t0 + TWO_FINGERS_C(0.0125);
-    const two_fingers_real_t t61 = t22 + TWO_FINGERS_C(-0.05) * t16;
+    const two_fingers_real_t t61 = t22 + TWO_FINGERS_C(-0.05) * t16; /* link left_2: motion */
     out[13] = t60 * t48 + t42 * t61;
+    /* link left_2: velocities by those of the joints */
     const two_fingers_real_t t62 = TWO_FINGERS_C(0.08333333333333334) * t28;
     const two_fingers_real_t t63 = TWO_FINGERS_C(-0.08333333333333334) * t27;
-    const two_fingers_real_t t64 = t26 + TWO_FINGERS_C(0.05) * (t18 + t21);
+    const two_fingers_real_t t64 = t26 + TWO_FINGERS_C(0.05) * (t18 + t21); /* link left_2: motion */
     const two_fingers_real_t t65 = t25 + TWO_FINGERS_C(0.05) * t20;
+    /* link left_2: columns */
     const two_fingers_real_t t66 = TWO_FINGERS_C(1.6666666666666667) * (t27 * t64 + t28 * t65);
     out[54] = t63 * (t50 + t55) + t62 * t54 + t66;
     out[95] = t66;
@@ -165,23 +170,25 @@ int two_fingers_slotine_li_regressor(
     const two_fingers_real_t t67 = TWO_FINGERS_C(1.6666666666666667) * (t28 * t64 - t27 * t65);
     out[55] = t67 - (t63 * t57 + t62 * (t49 + t55));
     out[96] = t67;
-    const two_fingers_real_t t69 = t68 * dq[0];
+    const two_fingers_real_t t69 = t68 * dq[0]; /* link right_1: motion */
     const two_fingers_real_t t70 = t68 * dq_r[0];
     const two_fingers_real_t t71 = TWO_FINGERS_C(0.5) * (t69 * dq_r[3] + dq[3] * t70);
     const two_fingers_real_t t73 = t72 * ddq_r[0];
     const two_fingers_real_t t74 = t73 + t71;
+    /* link right_1: velocities by those of the joints */
     const two_fingers_real_t t75 = TWO_FINGERS_C(0.4166666666666667) * t72;
-    const two_fingers_real_t t76 = t72 * dq[0];
+    const two_fingers_real_t t76 = t72 * dq[0]; /* link right_1: motion */
     const two_fingers_real_t t77 = t72 * dq_r[0];
     const two_fingers_real_t t78 = TWO_FINGERS_C(-0.5) * (t76 * dq_r[3] + dq[3] * t77);
+    /* link right_1: velocities by those of the joints */
     const two_fingers_real_t t79 = TWO_FINGERS_C(0.4166666666666667) * t68;
-    const two_fingers_real_t t80 = t79 * t78;
+    const two_fingers_real_t t80 = t79 * t78; /* link right_1: columns */
     out[15] = t75 * t74 - t80;
-    const two_fingers_real_t t81 = t76 * t70 + t69 * t77;
+    const two_fingers_real_t t81 = t76 * t70 + t69 * t77; /* link right_2: motion */
     out[138] = TWO_FINGERS_C(-0.8333333333333334) * t81;
     const two_fingers_real_t t82 = t71 + t74;
-    const two_fingers_real_t t83 = t68 * ddq_r[0];
-    const two_fingers_real_t t84 = t78 + (t83 + t78);
+    const two_fingers_real_t t83 = t68 * ddq_r[0]; /* link right_1: motion */
+    const two_fingers_real_t t84 = t78 + (t83 + t78); /* link right_2: motion */
     out[16] = t79 * t82 + t75 * t84;
     const two_fingers_real_t t85 = t76 * t77;
     const two_fingers_real_t t86 = t69 * t70;
@@ -195,6 +202,7 @@ int two_fingers_slotine_li_regressor(
     out[141] = TWO_FINGERS_C(1.6666666666666667) * t83;
     out[19] = t80 + t75 * t71;
     out[142] = TWO_FINGERS_C(1.6666666666666667) * ddq_r[3];
+    /* link right_1: motion */
     const two_fingers_real_t t90 = TWO_FINGERS_C(0.03446827135542729) * t23
         + TWO_FINGERS_C(-0.00607768621834256) * ddq_r[0];
     const two_fingers_real_t t91 = TWO_FINGERS_C(0.03446827135542729) * ddq_r[0]
@@ -209,7 +217,7 @@ int two_fingers_slotine_li_regressor(
     out[21] = TWO_FINGERS_C(-0.014583333333333334) * t82 + t75 * t92;
     const two_fingers_real_t t95 = TWO_FINGERS_C(-9.81) * t72 + t68 * t93;
     out[144] = TWO_FINGERS_C(1.6666666666666667) * t95;
-    const two_fingers_real_t t98 = t68 * t97 - t72 * t96;
+    const two_fingers_real_t t98 = t68 * t97 - t72 * t96; /* link right_2: motion */
     const two_fingers_real_t t99 = dq[0] * t98;
     const two_fingers_real_t t100 = dq_r[3] + dq_r[4];
     const two_fingers_real_t t101 = t98 * dq_r[0];
@@ -218,32 +226,35 @@ int two_fingers_slotine_li_regressor(
     const two_fingers_real_t t104 = t72 * t97 + t68 * t96;
     const two_fingers_real_t t105 = t104 * ddq_r[0];
     const two_fingers_real_t t106 = t105 + t103;
+    /* link right_2: velocities by those of the joints */
     const two_fingers_real_t t107 = t97 * t75 + t96 * t79;
-    const two_fingers_real_t t108 = dq[0] * t104;
+    const two_fingers_real_t t108 = dq[0] * t104; /* link right_2: motion */
     const two_fingers_real_t t109 = t104 * dq_r[0];
     const two_fingers_real_t t110 = TWO_FINGERS_C(-0.5) * (t108 * t100 + t102 * t109);
+    /* link right_2: velocities by those of the joints */
     const two_fingers_real_t t111 = t96 * t75 - t97 * t79;
-    const two_fingers_real_t t112 = t111 * t110;
+    const two_fingers_real_t t112 = t111 * t110; /* link right_2: columns */
     out[22] = t107 * t106 + t112;
-    const two_fingers_real_t t113 = t108 * t101 + t99 * t109;
-    const two_fingers_real_t t114 = TWO_FINGERS_C(-0.8333333333333334) * t113;
+    const two_fingers_real_t t113 = t108 * t101 + t99 * t109; /* link right_2: motion */
+    const two_fingers_real_t t114 = TWO_FINGERS_C(-0.8333333333333334) * t113; /* link right_2: columns */
     out[145] = t114;
     out[186] = t114;
     const two_fingers_real_t t115 = t103 + t106;
-    const two_fingers_real_t t116 = t98 * ddq_r[0];
-    const two_fingers_real_t t117 = t110 + (t116 + t110);
+    const two_fingers_real_t t116 = t98 * ddq_r[0]; /* link right_2: motion */
+    const two_fingers_real_t t117 = t110 + (t116 + t110); /* link right_2: columns */
     out[23] = t107 * t117 - t111 * t115;
-    const two_fingers_real_t t118 = t108 * t109;
+    const two_fingers_real_t t118 = t108 * t109; /* link right_2: motion */
     const two_fingers_real_t t119 = t99 * t101;
+    /* link right_2: columns */
     const two_fingers_real_t t120 = TWO_FINGERS_C(1.6666666666666667) * (t118 - t119);
     out[146] = t120;
     out[187] = t120;
-    const two_fingers_real_t t121 = TWO_FINGERS_C(0.5) * t113;
+    const two_fingers_real_t t121 = TWO_FINGERS_C(0.5) * t113; /* link right_2: motion */
     const two_fingers_real_t t122 = ddq_r[3] + ddq_r[4];
-    const two_fingers_real_t t123 = t122 + t121;
-    const two_fingers_real_t t124 = t102 * t100;
+    const two_fingers_real_t t123 = t122 + t121; /* link right_2: columns */
+    const two_fingers_real_t t124 = t102 * t100; /* link right_2: motion */
     out[24] = t107 * t123 + t111 * (t118 - t124);
-    const two_fingers_real_t t125 = TWO_FINGERS_C(1.6666666666666667) * t105;
+    const two_fingers_real_t t125 = TWO_FINGERS_C(1.6666666666666667) * t105; /* link right_2: columns */
     out[147] = t125;
     out[188] = t125;
     const two_fingers_real_t t126 = t121 - t122;
@@ -255,13 +266,16 @@ int two_fingers_slotine_li_regressor(
     const two_fingers_real_t t128 = TWO_FINGERS_C(1.6666666666666667) * t122;
     out[149] = t128;
     out[190] = t128;
+    /* link right_2: velocities by those of the joints */
     const two_fingers_real_t t129 = TWO_FINGERS_C(0.01875) * t68 + TWO_FINGERS_C(0.014583333333333334);
-    const two_fingers_real_t t130 = t92 + TWO_FINGERS_C(-0.045) * t84;
+    const two_fingers_real_t t130 = t92 + TWO_FINGERS_C(-0.045) * t84; /* link right_2: motion */
     out[27] = t129 * t117 + t111 * t130;
+    /* link right_2: velocities by those of the joints */
     const two_fingers_real_t t131 = TWO_FINGERS_C(0.075) * t97;
     const two_fingers_real_t t132 = TWO_FINGERS_C(-0.075) * t96;
-    const two_fingers_real_t t133 = t94 + TWO_FINGERS_C(0.045) * t88;
+    const two_fingers_real_t t133 = t94 + TWO_FINGERS_C(0.045) * t88; /* link right_2: motion */
     const two_fingers_real_t t134 = t95 + TWO_FINGERS_C(0.045) * (t86 + t89);
+    /* link right_2: columns */
     const two_fingers_real_t t135 = TWO_FINGERS_C(1.6666666666666667) * (t96 * t134 + t97 * t133);
     out[150] = t132 * (t119 + t124) + t131 * t123 + t135;
     out[191] = t135;
@@ -270,20 +284,20 @@ int two_fingers_slotine_li_regressor(
     out[151] = t136 - (t132 * t126 + t131 * (t118 + t124));
     out[192] = t136;
     out[29] = TWO_FINGERS_C(1.5e3) * dq[0];
-    const two_fingers_real_t t137 = two_fingers_sign(dq[0]);
+    const two_fingers_real_t t137 = two_fingers_sign(dq[0]); /* joint wrist: coulomb_friction */
     out[30] = TWO_FINGERS_C(25.0) * t137;
     out[72] = TWO_FINGERS_C(1.5e3) * dq[1];
-    const two_fingers_real_t t138 = two_fingers_sign(dq[1]);
+    const two_fingers_real_t t138 = two_fingers_sign(dq[1]); /* joint left_1: coulomb_friction */
     out[73] = TWO_FINGERS_C(50.0) * t138;
     out[115] = TWO_FINGERS_C(1.5e3) * dq[2];
-    const two_fingers_real_t t139 = two_fingers_sign(dq[2]);
+    const two_fingers_real_t t139 = two_fingers_sign(dq[2]); /* joint left_2: coulomb_friction */
     out[116] = TWO_FINGERS_C(50.0) * t139;
     out[117] = TWO_FINGERS_C(1.5e3) * ddq_r[2];
     out[159] = TWO_FINGERS_C(1.5e3) * dq[3];
-    const two_fingers_real_t t140 = two_fingers_sign(dq[3]);
+    const two_fingers_real_t t140 = two_fingers_sign(dq[3]); /* joint right_1: coulomb_friction */
     out[160] = TWO_FINGERS_C(50.0) * t140;
     out[202] = TWO_FINGERS_C(1.5e3) * dq[4];
-    const two_fingers_real_t t141 = two_fingers_sign(dq[4]);
+    const two_fingers_real_t t141 = two_fingers_sign(dq[4]); /* joint right_2: coulomb_friction */
     out[203] = TWO_FINGERS_C(50.0) * t141;
     out[204] = TWO_FINGERS_C(1.5e3) * ddq_r[4];
     /* always zero */

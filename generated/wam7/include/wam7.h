@@ -15,7 +15,8 @@
  *
  * Every function returns WAM7_STATUS_OK, or the sum of the WAM7_STATUS_ bits that apply; all of
  * its outputs are then zero. Inputs are checked by their Euclidean norm, so one that is not finite is
- * found too (not with -ffast-math). Outputs may not overlap inputs. Matrices are row-major.
+ * found too (not with -ffast-math). Outputs may not overlap inputs. Matrices are row-major. In the sources a
+ * remark behind a value says which link or joint it belongs to, and those after it up to the next remark.
  *
  * Coordinates:
  *
@@ -96,7 +97,7 @@
 #define WAM7_H
 
 /** Number of this generation: header and sources of different ones do not compile together. */
-#define WAM7_GENERATION 0x7A21915FUL
+#define WAM7_GENERATION 0x0E2B7B26UL
 
 /** SHA-256 of the description that this is the model of, then after a blank the description's version, if any. */
 #define WAM7_MODEL "552353c9ea1f05cf3522da2330779db9d5ae95abc9b7ddc1779c790670b7dd0e"
@@ -129,6 +130,7 @@
 #define wam7_mass_matrix wam7_mass_matrix_float
 #define wam7_forward_dynamics wam7_forward_dynamics_float
 #define wam7_energy wam7_energy_float
+#define wam7_joint_effort wam7_joint_effort_float
 #define wam7_regressor wam7_regressor_float
 #define wam7_regressor_standard wam7_regressor_standard_float
 #define wam7_regressor_packed wam7_regressor_packed_float
@@ -139,6 +141,7 @@
 #define wam7_mass_matrix_standard wam7_mass_matrix_standard_float
 #define wam7_forward_dynamics_standard wam7_forward_dynamics_standard_float
 #define wam7_energy_standard wam7_energy_standard_float
+#define wam7_joint_effort_standard wam7_joint_effort_standard_float
 #define wam7_forward_kinematics wam7_forward_kinematics_float
 #define wam7_jacobian wam7_jacobian_float
 #define wam7_motor_from_joint wam7_motor_from_joint_float
@@ -148,6 +151,8 @@
 #define wam7_forward_dynamics_derivatives wam7_forward_dynamics_derivatives_float
 #define wam7_inverse_dynamics_derivatives_standard wam7_inverse_dynamics_derivatives_standard_float
 #define wam7_forward_dynamics_derivatives_standard wam7_forward_dynamics_derivatives_standard_float
+#define wam7_momentum_observer_step wam7_momentum_observer_step_float
+#define wam7_momentum_observer_step_standard wam7_momentum_observer_step_standard_float
 #define wam7_check_parameters wam7_check_parameters_float
 #define wam7_check_parameters_standard wam7_check_parameters_standard_float
 #define wam7_model wam7_model_float
@@ -167,11 +172,15 @@ typedef WAM7_REAL wam7_real_t;
 #define WAM7_N_PARAMETERS           62   /**< base parameters */
 #define WAM7_N_STANDARD_PARAMETERS  91   /**< standard parameters */
 #define WAM7_N_PACKED               207  /**< structural non-zeros of the regressor */
+#define WAM7_N_OBSERVER_STATES      7    /**< state of the observer: the momentum that the model expects */
 
-#define WAM7_STATUS_OK     0
-#define WAM7_STATUS_STROKE 1 /**< a lever would leave its stroke */
-#define WAM7_STATUS_PIVOT  2 /**< a pivot of the mass matrix vanishes, or the result is beyond 1e15 */
-#define WAM7_STATUS_INPUT  4 /**< an input is not finite or beyond its bound */
+/** WAM7_STATUS_OK or bits of the others. */
+typedef unsigned int wam7_status_t;
+
+#define WAM7_STATUS_OK     0U
+#define WAM7_STATUS_STROKE 1U /**< a lever would leave its stroke */
+#define WAM7_STATUS_PIVOT  2U /**< a pivot of the mass matrix vanishes, or the result is beyond 1e15 */
+#define WAM7_STATUS_INPUT  4U /**< an input is not finite or beyond its bound */
 
 /** Indices of the base parameters. */
 enum {
@@ -352,7 +361,7 @@ const char *wam7_model(void);
  *
  * @return WAM7_STATUS_OK or WAM7_STATUS_INPUT
  */
-int wam7_check_parameters(const wam7_real_t parameters[WAM7_N_PARAMETERS]);
+wam7_status_t wam7_check_parameters(const wam7_real_t parameters[WAM7_N_PARAMETERS]);
 
 /**
  * Whether standard parameters can be used: finite, and their norm within its bound. Every function that takes them checks
@@ -360,7 +369,7 @@ int wam7_check_parameters(const wam7_real_t parameters[WAM7_N_PARAMETERS]);
  *
  * @return WAM7_STATUS_OK or WAM7_STATUS_INPUT
  */
-int wam7_check_parameters_standard(const wam7_real_t parameters[WAM7_N_STANDARD_PARAMETERS]);
+wam7_status_t wam7_check_parameters_standard(const wam7_real_t parameters[WAM7_N_STANDARD_PARAMETERS]);
 
 /**
  * Inputs that give the accelerations ddq in the state q, dq; base parameters.
@@ -372,9 +381,9 @@ int wam7_check_parameters_standard(const wam7_real_t parameters[WAM7_N_STANDARD_
  * @param[out]  out         [7]   [A]        inputs: motor currents, efforts where undriven
  * @return WAM7_STATUS_OK or status bits
  *
- * Operations: 643 (344 mul, 299 add, 0 neg), 12 trig, 7 other.
+ * Operations: 643 (344 mul, 299 add, 0 neg), 12 trig, 7 other calls (sign, select and the like).
  */
-int wam7_inverse_dynamics(
+wam7_status_t wam7_inverse_dynamics(
     const wam7_real_t q[WAM7_N_JOINTS],
     const wam7_real_t dq[WAM7_N_JOINTS],
     const wam7_real_t ddq[WAM7_N_JOINTS],
@@ -391,7 +400,7 @@ int wam7_inverse_dynamics(
  *
  * Operations: 109 (71 mul, 38 add, 0 neg), 12 trig.
  */
-int wam7_gravity(
+wam7_status_t wam7_gravity(
     const wam7_real_t q[WAM7_N_JOINTS],
     const wam7_real_t parameters[WAM7_N_PARAMETERS],
     wam7_real_t out[WAM7_N_JOINTS]);
@@ -405,9 +414,9 @@ int wam7_gravity(
  * @param[out]  out         [7]   [A]      inputs: motor currents, efforts where undriven
  * @return WAM7_STATUS_OK or status bits
  *
- * Operations: 609 (330 mul, 279 add, 0 neg), 12 trig, 7 other.
+ * Operations: 609 (330 mul, 279 add, 0 neg), 12 trig, 7 other calls (sign, select and the like).
  */
-int wam7_bias(
+wam7_status_t wam7_bias(
     const wam7_real_t q[WAM7_N_JOINTS],
     const wam7_real_t dq[WAM7_N_JOINTS],
     const wam7_real_t parameters[WAM7_N_PARAMETERS],
@@ -423,7 +432,7 @@ int wam7_bias(
  *
  * Operations: 353 (190 mul, 163 add, 0 neg), 12 trig.
  */
-int wam7_mass_matrix(
+wam7_status_t wam7_mass_matrix(
     const wam7_real_t q[WAM7_N_JOINTS],
     const wam7_real_t parameters[WAM7_N_PARAMETERS],
     wam7_real_t out[WAM7_N_JOINTS * WAM7_N_JOINTS]);
@@ -439,9 +448,9 @@ int wam7_mass_matrix(
  * @param[out]  out         [7]   [rad/s^2]  joint accelerations
  * @return WAM7_STATUS_OK or status bits
  *
- * Operations: 1205 (652 mul, 553 add, 0 neg), 7 div, 12 trig, 7 other.
+ * Operations: 1205 (652 mul, 553 add, 0 neg), 7 div, 12 trig, 7 other calls (sign, select and the like).
  */
-int wam7_forward_dynamics(
+wam7_status_t wam7_forward_dynamics(
     const wam7_real_t q[WAM7_N_JOINTS],
     const wam7_real_t dq[WAM7_N_JOINTS],
     const wam7_real_t input[WAM7_N_JOINTS],
@@ -460,12 +469,32 @@ int wam7_forward_dynamics(
  *
  * Operations: 325 (205 mul, 120 add, 0 neg), 12 trig.
  */
-int wam7_energy(
+wam7_status_t wam7_energy(
     const wam7_real_t q[WAM7_N_JOINTS],
     const wam7_real_t dq[WAM7_N_JOINTS],
     const wam7_real_t parameters[WAM7_N_PARAMETERS],
     wam7_real_t kinetic[1],
     wam7_real_t potential[1]);
+
+/**
+ * Efforts of the drives at the joints that give the accelerations ddq in the state q, dq; base
+ * parameters.
+ *
+ * @param[in]   q           [7]   [rad]      joint coordinates; norm at most 10000
+ * @param[in]   dq          [7]   [rad/s]    joint velocities; norm at most 100000
+ * @param[in]   ddq         [7]   [rad/s^2]  joint accelerations; norm at most 1e+08
+ * @param[in]   parameters  [62]             base parameters; norm at most 1e+09
+ * @param[out]  out         [7]   [N m]      efforts at the joints
+ * @return WAM7_STATUS_OK or status bits
+ *
+ * Operations: 636 (337 mul, 299 add, 0 neg), 12 trig, 7 other calls (sign, select and the like).
+ */
+wam7_status_t wam7_joint_effort(
+    const wam7_real_t q[WAM7_N_JOINTS],
+    const wam7_real_t dq[WAM7_N_JOINTS],
+    const wam7_real_t ddq[WAM7_N_JOINTS],
+    const wam7_real_t parameters[WAM7_N_PARAMETERS],
+    wam7_real_t out[WAM7_N_JOINTS]);
 
 /**
  * Inputs per unit of each base parameter.
@@ -477,9 +506,9 @@ int wam7_energy(
  *                                                         row-major
  * @return WAM7_STATUS_OK or status bits
  *
- * Operations: 1180 (720 mul, 458 add, 2 neg), 12 trig, 7 other.
+ * Operations: 1180 (720 mul, 458 add, 2 neg), 12 trig, 7 other calls (sign, select and the like).
  */
-int wam7_regressor(
+wam7_status_t wam7_regressor(
     const wam7_real_t q[WAM7_N_JOINTS],
     const wam7_real_t dq[WAM7_N_JOINTS],
     const wam7_real_t ddq[WAM7_N_JOINTS],
@@ -495,9 +524,9 @@ int wam7_regressor(
  *                                                         row-major
  * @return WAM7_STATUS_OK or status bits
  *
- * Operations: 1397 (815 mul, 575 add, 7 neg), 12 trig, 7 other.
+ * Operations: 1397 (815 mul, 575 add, 7 neg), 12 trig, 7 other calls (sign, select and the like).
  */
-int wam7_regressor_standard(
+wam7_status_t wam7_regressor_standard(
     const wam7_real_t q[WAM7_N_JOINTS],
     const wam7_real_t dq[WAM7_N_JOINTS],
     const wam7_real_t ddq[WAM7_N_JOINTS],
@@ -512,9 +541,9 @@ int wam7_regressor_standard(
  * @param[out]  out  [207]  [A per unit of the parameter]  structural non-zeros, row after row
  * @return WAM7_STATUS_OK or status bits
  *
- * Operations: 1180 (720 mul, 458 add, 2 neg), 12 trig, 7 other.
+ * Operations: 1180 (720 mul, 458 add, 2 neg), 12 trig, 7 other calls (sign, select and the like).
  */
-int wam7_regressor_packed(
+wam7_status_t wam7_regressor_packed(
     const wam7_real_t q[WAM7_N_JOINTS],
     const wam7_real_t dq[WAM7_N_JOINTS],
     const wam7_real_t ddq[WAM7_N_JOINTS],
@@ -532,9 +561,9 @@ int wam7_regressor_packed(
  *                                                           row-major
  * @return WAM7_STATUS_OK or status bits
  *
- * Operations: 1272 (778 mul, 491 add, 3 neg), 12 trig, 7 other.
+ * Operations: 1272 (778 mul, 491 add, 3 neg), 12 trig, 7 other calls (sign, select and the like).
  */
-int wam7_slotine_li_regressor(
+wam7_status_t wam7_slotine_li_regressor(
     const wam7_real_t q[WAM7_N_JOINTS],
     const wam7_real_t dq[WAM7_N_JOINTS],
     const wam7_real_t dq_r[WAM7_N_JOINTS],
@@ -551,9 +580,9 @@ int wam7_slotine_li_regressor(
  * @param[out]  out         [7]   [A]        inputs: motor currents, efforts where undriven
  * @return WAM7_STATUS_OK or status bits
  *
- * Operations: 767 (399 mul, 368 add, 0 neg), 12 trig, 7 other.
+ * Operations: 767 (399 mul, 368 add, 0 neg), 12 trig, 7 other calls (sign, select and the like).
  */
-int wam7_inverse_dynamics_standard(
+wam7_status_t wam7_inverse_dynamics_standard(
     const wam7_real_t q[WAM7_N_JOINTS],
     const wam7_real_t dq[WAM7_N_JOINTS],
     const wam7_real_t ddq[WAM7_N_JOINTS],
@@ -570,7 +599,7 @@ int wam7_inverse_dynamics_standard(
  *
  * Operations: 208 (127 mul, 81 add, 0 neg), 12 trig.
  */
-int wam7_gravity_standard(
+wam7_status_t wam7_gravity_standard(
     const wam7_real_t q[WAM7_N_JOINTS],
     const wam7_real_t parameters[WAM7_N_STANDARD_PARAMETERS],
     wam7_real_t out[WAM7_N_JOINTS]);
@@ -584,9 +613,9 @@ int wam7_gravity_standard(
  * @param[out]  out         [7]   [A]      inputs: motor currents, efforts where undriven
  * @return WAM7_STATUS_OK or status bits
  *
- * Operations: 727 (381 mul, 346 add, 0 neg), 12 trig, 7 other.
+ * Operations: 727 (381 mul, 346 add, 0 neg), 12 trig, 7 other calls (sign, select and the like).
  */
-int wam7_bias_standard(
+wam7_status_t wam7_bias_standard(
     const wam7_real_t q[WAM7_N_JOINTS],
     const wam7_real_t dq[WAM7_N_JOINTS],
     const wam7_real_t parameters[WAM7_N_STANDARD_PARAMETERS],
@@ -602,7 +631,7 @@ int wam7_bias_standard(
  *
  * Operations: 401 (207 mul, 194 add, 0 neg), 12 trig.
  */
-int wam7_mass_matrix_standard(
+wam7_status_t wam7_mass_matrix_standard(
     const wam7_real_t q[WAM7_N_JOINTS],
     const wam7_real_t parameters[WAM7_N_STANDARD_PARAMETERS],
     wam7_real_t out[WAM7_N_JOINTS * WAM7_N_JOINTS]);
@@ -618,9 +647,9 @@ int wam7_mass_matrix_standard(
  * @param[out]  out         [7]   [rad/s^2]  joint accelerations
  * @return WAM7_STATUS_OK or status bits
  *
- * Operations: 1370 (720 mul, 650 add, 0 neg), 7 div, 12 trig, 7 other.
+ * Operations: 1370 (720 mul, 650 add, 0 neg), 7 div, 12 trig, 7 other calls (sign, select and the like).
  */
-int wam7_forward_dynamics_standard(
+wam7_status_t wam7_forward_dynamics_standard(
     const wam7_real_t q[WAM7_N_JOINTS],
     const wam7_real_t dq[WAM7_N_JOINTS],
     const wam7_real_t input[WAM7_N_JOINTS],
@@ -639,12 +668,32 @@ int wam7_forward_dynamics_standard(
  *
  * Operations: 438 (269 mul, 169 add, 0 neg), 12 trig.
  */
-int wam7_energy_standard(
+wam7_status_t wam7_energy_standard(
     const wam7_real_t q[WAM7_N_JOINTS],
     const wam7_real_t dq[WAM7_N_JOINTS],
     const wam7_real_t parameters[WAM7_N_STANDARD_PARAMETERS],
     wam7_real_t kinetic[1],
     wam7_real_t potential[1]);
+
+/**
+ * Efforts of the drives at the joints that give the accelerations ddq in the state q, dq; standard
+ * parameters.
+ *
+ * @param[in]   q           [7]   [rad]      joint coordinates; norm at most 10000
+ * @param[in]   dq          [7]   [rad/s]    joint velocities; norm at most 100000
+ * @param[in]   ddq         [7]   [rad/s^2]  joint accelerations; norm at most 1e+08
+ * @param[in]   parameters  [91]             standard parameters; norm at most 1e+09
+ * @param[out]  out         [7]   [N m]      efforts at the joints
+ * @return WAM7_STATUS_OK or status bits
+ *
+ * Operations: 760 (392 mul, 368 add, 0 neg), 12 trig, 7 other calls (sign, select and the like).
+ */
+wam7_status_t wam7_joint_effort_standard(
+    const wam7_real_t q[WAM7_N_JOINTS],
+    const wam7_real_t dq[WAM7_N_JOINTS],
+    const wam7_real_t ddq[WAM7_N_JOINTS],
+    const wam7_real_t parameters[WAM7_N_STANDARD_PARAMETERS],
+    wam7_real_t out[WAM7_N_JOINTS]);
 
 /**
  * Homogeneous transforms from every link's frame to the base, link after link.
@@ -662,7 +711,7 @@ int wam7_energy_standard(
  *
  * Operations: 136 (77 mul, 40 add, 19 neg), 14 trig.
  */
-int wam7_forward_kinematics(
+wam7_status_t wam7_forward_kinematics(
     const wam7_real_t q[WAM7_N_JOINTS],
     wam7_real_t out[16 * WAM7_N_LINKS]);
 
@@ -675,7 +724,7 @@ int wam7_forward_kinematics(
  *
  * Operations: 139 (87 mul, 50 add, 2 neg), 12 trig.
  */
-int wam7_jacobian(
+wam7_status_t wam7_jacobian(
     const wam7_real_t q[WAM7_N_JOINTS],
     wam7_real_t out[6 * WAM7_N_JOINTS]);
 
@@ -692,7 +741,7 @@ int wam7_jacobian(
  *
  * Operations: 21 (21 mul, 0 add, 0 neg).
  */
-int wam7_motor_from_joint(
+wam7_status_t wam7_motor_from_joint(
     const wam7_real_t q[WAM7_N_JOINTS],
     const wam7_real_t dq[WAM7_N_JOINTS],
     const wam7_real_t ddq[WAM7_N_JOINTS],
@@ -713,7 +762,7 @@ int wam7_motor_from_joint(
  *
  * Operations: 21 (21 mul, 0 add, 0 neg).
  */
-int wam7_joint_from_motor(
+wam7_status_t wam7_joint_from_motor(
     const wam7_real_t q_m[WAM7_N_JOINTS],
     const wam7_real_t dq_m[WAM7_N_JOINTS],
     const wam7_real_t ddq_m[WAM7_N_JOINTS],
@@ -724,13 +773,13 @@ int wam7_joint_from_motor(
 /**
  * Joint effort per input.
  *
- * @param[in]   q    [7]  [rad]            joint coordinates; norm at most 10000
- * @param[out]  out  [7]  [(N m) per (A)]  drive gains K
+ * @param[in]   q    [7]  [rad]        joint coordinates; norm at most 10000
+ * @param[out]  out  [7]  [N m per A]  drive gains K
  * @return WAM7_STATUS_OK or status bits
  *
  * Operations: 0 (0 mul, 0 add, 0 neg).
  */
-int wam7_drive_gain(
+wam7_status_t wam7_drive_gain(
     const wam7_real_t q[WAM7_N_JOINTS],
     wam7_real_t out[WAM7_N_JOINTS]);
 
@@ -738,19 +787,19 @@ int wam7_drive_gain(
  * Inputs that give the accelerations ddq, and their derivatives; at a kink of a law, as of dry
  * friction at rest, the mean of both sides; base parameters.
  *
- * @param[in]   q             [7]   [rad]                joint coordinates; norm at most 10000
- * @param[in]   dq            [7]   [rad/s]              joint velocities; norm at most 100000
- * @param[in]   ddq           [7]   [rad/s^2]            joint accelerations; norm at most 1e+08
- * @param[in]   parameters    [62]                       base parameters; norm at most 1e+09
- * @param[out]  input         [7]   [A]                  inputs: motor currents, efforts where undriven
- * @param[out]  input_by_q    [49]  [(A) per (rad)]      d input / d q; 7 x 7, row-major
- * @param[out]  input_by_dq   [49]  [(A) per (rad/s)]    d input / d dq; 7 x 7, row-major
- * @param[out]  input_by_ddq  [49]  [(A) per (rad/s^2)]  d input / d ddq; 7 x 7, row-major
+ * @param[in]   q             [7]   [rad]              joint coordinates; norm at most 10000
+ * @param[in]   dq            [7]   [rad/s]            joint velocities; norm at most 100000
+ * @param[in]   ddq           [7]   [rad/s^2]          joint accelerations; norm at most 1e+08
+ * @param[in]   parameters    [62]                     base parameters; norm at most 1e+09
+ * @param[out]  input         [7]   [A]                inputs: motor currents, efforts where undriven
+ * @param[out]  input_by_q    [49]  [A per rad]        d input / d q; 7 x 7, row-major
+ * @param[out]  input_by_dq   [49]  [A per (rad/s)]    d input / d dq; 7 x 7, row-major
+ * @param[out]  input_by_ddq  [49]  [A per (rad/s^2)]  d input / d ddq; 7 x 7, row-major
  * @return WAM7_STATUS_OK or status bits
  *
- * Operations: 3119 (1782 mul, 1337 add, 0 neg), 12 trig, 7 other.
+ * Operations: 3119 (1782 mul, 1337 add, 0 neg), 12 trig, 7 other calls (sign, select and the like).
  */
-int wam7_inverse_dynamics_derivatives(
+wam7_status_t wam7_inverse_dynamics_derivatives(
     const wam7_real_t q[WAM7_N_JOINTS],
     const wam7_real_t dq[WAM7_N_JOINTS],
     const wam7_real_t ddq[WAM7_N_JOINTS],
@@ -770,14 +819,14 @@ int wam7_inverse_dynamics_derivatives(
  *                                                           norm at most 1e+09
  * @param[in]   parameters    [62]                           base parameters; norm at most 1e+09
  * @param[out]  ddq           [7]   [rad/s^2]                joint accelerations
- * @param[out]  ddq_by_q      [49]  [(rad/s^2) per (rad)]    d ddq / d q; 7 x 7, row-major
+ * @param[out]  ddq_by_q      [49]  [(rad/s^2) per rad]      d ddq / d q; 7 x 7, row-major
  * @param[out]  ddq_by_dq     [49]  [(rad/s^2) per (rad/s)]  d ddq / d dq; 7 x 7, row-major
- * @param[out]  ddq_by_input  [49]  [(rad/s^2) per (A)]      d ddq / d input; 7 x 7, row-major
+ * @param[out]  ddq_by_input  [49]  [(rad/s^2) per A]        d ddq / d input; 7 x 7, row-major
  * @return WAM7_STATUS_OK or status bits
  *
- * Operations: 5105 (2823 mul, 2282 add, 0 neg), 7 div, 12 trig, 7 other.
+ * Operations: 5105 (2823 mul, 2282 add, 0 neg), 7 div, 12 trig, 7 other calls (sign, select and the like).
  */
-int wam7_forward_dynamics_derivatives(
+wam7_status_t wam7_forward_dynamics_derivatives(
     const wam7_real_t q[WAM7_N_JOINTS],
     const wam7_real_t dq[WAM7_N_JOINTS],
     const wam7_real_t input[WAM7_N_JOINTS],
@@ -791,19 +840,19 @@ int wam7_forward_dynamics_derivatives(
  * Inputs that give the accelerations ddq, and their derivatives; at a kink of a law, as of dry
  * friction at rest, the mean of both sides; standard parameters.
  *
- * @param[in]   q             [7]   [rad]                joint coordinates; norm at most 10000
- * @param[in]   dq            [7]   [rad/s]              joint velocities; norm at most 100000
- * @param[in]   ddq           [7]   [rad/s^2]            joint accelerations; norm at most 1e+08
- * @param[in]   parameters    [91]                       standard parameters; norm at most 1e+09
- * @param[out]  input         [7]   [A]                  inputs: motor currents, efforts where undriven
- * @param[out]  input_by_q    [49]  [(A) per (rad)]      d input / d q; 7 x 7, row-major
- * @param[out]  input_by_dq   [49]  [(A) per (rad/s)]    d input / d dq; 7 x 7, row-major
- * @param[out]  input_by_ddq  [49]  [(A) per (rad/s^2)]  d input / d ddq; 7 x 7, row-major
+ * @param[in]   q             [7]   [rad]              joint coordinates; norm at most 10000
+ * @param[in]   dq            [7]   [rad/s]            joint velocities; norm at most 100000
+ * @param[in]   ddq           [7]   [rad/s^2]          joint accelerations; norm at most 1e+08
+ * @param[in]   parameters    [91]                     standard parameters; norm at most 1e+09
+ * @param[out]  input         [7]   [A]                inputs: motor currents, efforts where undriven
+ * @param[out]  input_by_q    [49]  [A per rad]        d input / d q; 7 x 7, row-major
+ * @param[out]  input_by_dq   [49]  [A per (rad/s)]    d input / d dq; 7 x 7, row-major
+ * @param[out]  input_by_ddq  [49]  [A per (rad/s^2)]  d input / d ddq; 7 x 7, row-major
  * @return WAM7_STATUS_OK or status bits
  *
- * Operations: 3411 (1910 mul, 1501 add, 0 neg), 12 trig, 7 other.
+ * Operations: 3411 (1910 mul, 1501 add, 0 neg), 12 trig, 7 other calls (sign, select and the like).
  */
-int wam7_inverse_dynamics_derivatives_standard(
+wam7_status_t wam7_inverse_dynamics_derivatives_standard(
     const wam7_real_t q[WAM7_N_JOINTS],
     const wam7_real_t dq[WAM7_N_JOINTS],
     const wam7_real_t ddq[WAM7_N_JOINTS],
@@ -823,14 +872,14 @@ int wam7_inverse_dynamics_derivatives_standard(
  *                                                           norm at most 1e+09
  * @param[in]   parameters    [91]                           standard parameters; norm at most 1e+09
  * @param[out]  ddq           [7]   [rad/s^2]                joint accelerations
- * @param[out]  ddq_by_q      [49]  [(rad/s^2) per (rad)]    d ddq / d q; 7 x 7, row-major
+ * @param[out]  ddq_by_q      [49]  [(rad/s^2) per rad]      d ddq / d q; 7 x 7, row-major
  * @param[out]  ddq_by_dq     [49]  [(rad/s^2) per (rad/s)]  d ddq / d dq; 7 x 7, row-major
- * @param[out]  ddq_by_input  [49]  [(rad/s^2) per (A)]      d ddq / d input; 7 x 7, row-major
+ * @param[out]  ddq_by_input  [49]  [(rad/s^2) per A]        d ddq / d input; 7 x 7, row-major
  * @return WAM7_STATUS_OK or status bits
  *
- * Operations: 5486 (2991 mul, 2495 add, 0 neg), 7 div, 12 trig, 7 other.
+ * Operations: 5486 (2991 mul, 2495 add, 0 neg), 7 div, 12 trig, 7 other calls (sign, select and the like).
  */
-int wam7_forward_dynamics_derivatives_standard(
+wam7_status_t wam7_forward_dynamics_derivatives_standard(
     const wam7_real_t q[WAM7_N_JOINTS],
     const wam7_real_t dq[WAM7_N_JOINTS],
     const wam7_real_t input[WAM7_N_JOINTS],
@@ -839,6 +888,66 @@ int wam7_forward_dynamics_derivatives_standard(
     wam7_real_t ddq_by_q[WAM7_N_JOINTS * WAM7_N_JOINTS],
     wam7_real_t ddq_by_dq[WAM7_N_JOINTS * WAM7_N_JOINTS],
     wam7_real_t ddq_by_input[WAM7_N_JOINTS * WAM7_N_JOINTS]);
+
+/**
+ * External efforts at the joints by the generalised momentum, with a delay of 1 / gain; state: zero at
+ * first, then what the step before gave; base parameters.
+ *
+ * @param[in]   q           [7]   [rad]       joint coordinates; norm at most 10000
+ * @param[in]   dq          [7]   [rad/s]     joint velocities; norm at most 100000
+ * @param[in]   input       [7]   [A]         inputs: motor currents, efforts where undriven; norm at most
+ *                                            1e+09
+ * @param[in]   dt          [1]   [s]         time step; norm at most 10000
+ * @param[in]   gain        [7]   [1/s]       gains of the observer, gain dt below 1; norm at most 100000
+ * @param[in]   parameters  [62]              base parameters; norm at most 1e+09
+ * @param[in]   state       [7]   [kg m^2/s]  state of the observer: the momentum that the model expects; norm
+ *                                            at most 1e+09
+ * @param[out]  state_next  [7]   [kg m^2/s]  state after the step
+ * @param[out]  external    [7]   [N m]       efforts that act on the arm from outside
+ * @return WAM7_STATUS_OK or status bits
+ *
+ * Operations: 596 (337 mul, 252 add, 7 neg), 12 trig, 7 other calls (sign, select and the like).
+ */
+wam7_status_t wam7_momentum_observer_step(
+    const wam7_real_t q[WAM7_N_JOINTS],
+    const wam7_real_t dq[WAM7_N_JOINTS],
+    const wam7_real_t input[WAM7_N_JOINTS],
+    const wam7_real_t dt[1],
+    const wam7_real_t gain[WAM7_N_JOINTS],
+    const wam7_real_t parameters[WAM7_N_PARAMETERS],
+    const wam7_real_t state[WAM7_N_OBSERVER_STATES],
+    wam7_real_t state_next[WAM7_N_OBSERVER_STATES],
+    wam7_real_t external[WAM7_N_JOINTS]);
+
+/**
+ * External efforts at the joints by the generalised momentum, with a delay of 1 / gain; state: zero at
+ * first, then what the step before gave; standard parameters.
+ *
+ * @param[in]   q           [7]   [rad]       joint coordinates; norm at most 10000
+ * @param[in]   dq          [7]   [rad/s]     joint velocities; norm at most 100000
+ * @param[in]   input       [7]   [A]         inputs: motor currents, efforts where undriven; norm at most
+ *                                            1e+09
+ * @param[in]   dt          [1]   [s]         time step; norm at most 10000
+ * @param[in]   gain        [7]   [1/s]       gains of the observer, gain dt below 1; norm at most 100000
+ * @param[in]   parameters  [91]              standard parameters; norm at most 1e+09
+ * @param[in]   state       [7]   [kg m^2/s]  state of the observer: the momentum that the model expects; norm
+ *                                            at most 1e+09
+ * @param[out]  state_next  [7]   [kg m^2/s]  state after the step
+ * @param[out]  external    [7]   [N m]       efforts that act on the arm from outside
+ * @return WAM7_STATUS_OK or status bits
+ *
+ * Operations: 789 (441 mul, 341 add, 7 neg), 12 trig, 7 other calls (sign, select and the like).
+ */
+wam7_status_t wam7_momentum_observer_step_standard(
+    const wam7_real_t q[WAM7_N_JOINTS],
+    const wam7_real_t dq[WAM7_N_JOINTS],
+    const wam7_real_t input[WAM7_N_JOINTS],
+    const wam7_real_t dt[1],
+    const wam7_real_t gain[WAM7_N_JOINTS],
+    const wam7_real_t parameters[WAM7_N_STANDARD_PARAMETERS],
+    const wam7_real_t state[WAM7_N_OBSERVER_STATES],
+    wam7_real_t state_next[WAM7_N_OBSERVER_STATES],
+    wam7_real_t external[WAM7_N_JOINTS]);
 
 #ifdef __cplusplus
 }

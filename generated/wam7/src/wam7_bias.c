@@ -6,7 +6,7 @@
  * Arm wam7, description 552353c9ea1f05cf.
  * SPDX-License-Identifier: 0BSD
  *
- * Operations: 609 (330 mul, 279 add, 0 neg), 12 trig, 7 other.
+ * Operations: 609 (330 mul, 279 add, 0 neg), 12 trig, 7 other calls (sign, select and the like).
  *
  * @param[in]   q           [7]   [rad]    joint coordinates; norm at most 10000
  * @param[in]   dq          [7]   [rad/s]  joint velocities; norm at most 100000
@@ -90,11 +90,11 @@
  */
 #include "wam7_private.h"
 
-#if WAM7_GENERATION != 0x7A21915FUL
+#if WAM7_GENERATION != 0x0E2B7B26UL
 #error "wam7.h and wam7_bias.c are of different generations: generate the arm again"
 #endif
 
-int wam7_bias(
+wam7_status_t wam7_bias(
     const wam7_real_t q[WAM7_N_JOINTS],
     const wam7_real_t dq[WAM7_N_JOINTS],
     const wam7_real_t parameters[WAM7_N_PARAMETERS],
@@ -104,7 +104,7 @@ int wam7_bias(
         XZ4, YZ4, ZZ4R, MX4R, MY4R, XX5R, XY5, XZ5, YZ5, ZZ5R, MX5, MY5R, XX6R, XY6, XZ6, YZ6, ZZ6R, MX6,
         MY6R, XX7R, XY7, XZ7R, YZ7R, ZZ7, MX7, MY7, FV1, FC1, FV2, FC2, FV3, FC3, IA3, FV4, FC4, IA4, FV5,
         FC5, IA5, FV6, FC6, IA6, FV7, FC7, IA7 };
-    int status = WAM7_STATUS_OK;
+    wam7_status_t status = WAM7_STATUS_OK;
 
     if (!wam7_within_joints(q, WAM7_C(1.0e8))
         || !wam7_within_joints(dq, WAM7_C(1.0e10))
@@ -128,57 +128,57 @@ int wam7_bias(
     WAM7_SINCOS(q[5], &t32, &t48);
     wam7_real_t t62, t55;
     WAM7_SINCOS(q[6], &t62, &t55);
-    const wam7_real_t t1 = t0 * dq[0];
-    const wam7_real_t t4 = t2 * t1 - t3 * dq[1];
+    const wam7_real_t t1 = t0 * dq[0]; /* link j2: motion */
+    const wam7_real_t t4 = t2 * t1 - t3 * dq[1]; /* link j3: motion */
     const wam7_real_t t5 = t3 * t1 + t2 * dq[1];
     const wam7_real_t t6 = t4 * t5;
-    const wam7_real_t t7 = dq[1] * t1;
-    const wam7_real_t t8 = t7 - t6;
-    const wam7_real_t t11 = t10 * dq[0];
+    const wam7_real_t t7 = dq[1] * t1; /* link j2: motion */
+    const wam7_real_t t8 = t7 - t6; /* link j4: motion */
+    const wam7_real_t t11 = t10 * dq[0]; /* link j2: motion */
     const wam7_real_t t12 = t1 * t11;
     const wam7_real_t t13 = dq[1] * t11;
     const wam7_real_t t14 = WAM7_C(-2.0) * t13;
-    const wam7_real_t t15 = t2 * t14 - t3 * t12;
+    const wam7_real_t t15 = t2 * t14 - t3 * t12; /* link j3: motion */
     const wam7_real_t t16 = dq[2] + t11;
     const wam7_real_t t17 = t5 * t16;
     const wam7_real_t t18 = t15 + t17;
-    const wam7_real_t t19 = t17 + t18;
+    const wam7_real_t t19 = t17 + t18; /* link j4: motion */
     const wam7_real_t t21 = t20 * t19 - t9 * t8;
     const wam7_real_t t22 = t9 * t4 + t20 * t16;
     const wam7_real_t t23 = dq[3] + t5;
     const wam7_real_t t24 = t22 * t23;
     const wam7_real_t t25 = t21 - t24;
-    const wam7_real_t t28 = t26 * t22 - t27 * t23;
+    const wam7_real_t t28 = t26 * t22 - t27 * t23; /* link j5: motion */
     const wam7_real_t t29 = t27 * t22 + t26 * t23;
     const wam7_real_t t30 = t28 * t29;
-    const wam7_real_t t31 = t25 + t30;
-    const wam7_real_t t33 = t2 * t12 + t3 * t14;
+    const wam7_real_t t31 = t25 + t30; /* link j6: motion */
+    const wam7_real_t t33 = t2 * t12 + t3 * t14; /* link j3: motion */
     const wam7_real_t t34 = t4 * t16;
     const wam7_real_t t35 = t33 - t34;
-    const wam7_real_t t36 = t9 * t16 - t20 * t4;
+    const wam7_real_t t36 = t9 * t16 - t20 * t4; /* link j4: motion */
     const wam7_real_t t37 = t22 * t36;
-    const wam7_real_t t38 = t35 + t37;
-    const wam7_real_t t39 = t20 * t8 + t9 * t19;
+    const wam7_real_t t38 = t35 + t37; /* link j5: motion */
+    const wam7_real_t t39 = t20 * t8 + t9 * t19; /* link j4: motion */
     const wam7_real_t t40 = t36 * t23;
     const wam7_real_t t41 = t39 - t40;
-    const wam7_real_t t42 = t41 - t40;
+    const wam7_real_t t42 = t41 - t40; /* link j5: motion */
     const wam7_real_t t43 = t26 * t42 - t27 * t38;
     const wam7_real_t t44 = dq[4] + t36;
     const wam7_real_t t45 = t29 * t44;
     const wam7_real_t t46 = t43 + t45;
-    const wam7_real_t t47 = t45 + t46;
+    const wam7_real_t t47 = t45 + t46; /* link j6: motion */
     const wam7_real_t t49 = t48 * t47 - t32 * t31;
     const wam7_real_t t50 = t48 * t44 - t32 * t28;
     const wam7_real_t t51 = dq[5] + t29;
     const wam7_real_t t52 = t50 * t51;
     const wam7_real_t t53 = t49 - t52;
-    const wam7_real_t t54 = t53 - t52;
-    const wam7_real_t t56 = t26 * t38 + t27 * t42;
+    const wam7_real_t t54 = t53 - t52; /* link j7: motion */
+    const wam7_real_t t56 = t26 * t38 + t27 * t42; /* link j5: motion */
     const wam7_real_t t57 = t28 * t44;
     const wam7_real_t t58 = t56 - t57;
-    const wam7_real_t t59 = t48 * t28 + t32 * t44;
+    const wam7_real_t t59 = t48 * t28 + t32 * t44; /* link j6: motion */
     const wam7_real_t t60 = t59 * t50;
-    const wam7_real_t t61 = t58 + t60;
+    const wam7_real_t t61 = t58 + t60; /* link j7: motion */
     const wam7_real_t t63 = t55 * t54 - t62 * t61;
     const wam7_real_t t64 = t62 * t59 + t55 * t51;
     const wam7_real_t t65 = dq[6] + t50;
@@ -187,177 +187,217 @@ int wam7_bias(
     const wam7_real_t t68 = t55 * t61 + t62 * t54;
     const wam7_real_t t69 = t55 * t59 - t62 * t51;
     const wam7_real_t t70 = t69 * t65;
-    const wam7_real_t t71 = t68 - t70 - t70;
-    const wam7_real_t t72 = t48 * t31 + t32 * t47;
+    const wam7_real_t t71 = t68 - t70 - t70; /* link j7: force and moment */
+    const wam7_real_t t72 = t48 * t31 + t32 * t47; /* link j6: motion */
     const wam7_real_t t73 = t59 * t51;
     const wam7_real_t t74 = t72 - t73;
-    const wam7_real_t t75 = t69 * t64;
-    const wam7_real_t t76 = t75 - t74;
+    const wam7_real_t t75 = t69 * t64; /* link j7: motion */
+    const wam7_real_t t76 = t75 - t74; /* link j7: force and moment */
     const wam7_real_t t77 = parameters[XY7] * t71 - (parameters[XX7R] * t67 + parameters[ZZ7] * t66)
         + parameters[XZ7R] * t76;
-    const wam7_real_t t78 = t64 * t64;
+    const wam7_real_t t78 = t64 * t64; /* link j7: motion */
     const wam7_real_t t79 = t65 * t65;
-    const wam7_real_t t80 = t36 * t36;
+    const wam7_real_t t80 = t36 * t36; /* link j4: motion */
     const wam7_real_t t81 = t23 * t23;
-    const wam7_real_t t82 = t80 + t81;
-    const wam7_real_t t83 = t5 * t5;
+    const wam7_real_t t82 = t80 + t81; /* link j5: motion */
+    const wam7_real_t t83 = t5 * t5; /* link j3: motion */
     const wam7_real_t t84 = t16 * t16;
-    const wam7_real_t t85 = t83 + t84;
-    const wam7_real_t t86 = WAM7_C(9.81) * t0;
-    const wam7_real_t t87 = t86 + WAM7_C(0.55) * t12;
+    const wam7_real_t t85 = t83 + t84; /* link j4: motion */
+    const wam7_real_t t86 = WAM7_C(9.81) * t0; /* link j2: motion */
+    const wam7_real_t t87 = t86 + WAM7_C(0.55) * t12; /* link j3: motion */
     const wam7_real_t t88 = WAM7_C(1.1) * t13;
     const wam7_real_t t89 = t2 * t87 - t3 * t88;
-    const wam7_real_t t90 = t89 + WAM7_C(0.045) * t85;
+    const wam7_real_t t90 = t89 + WAM7_C(0.045) * t85; /* link j4: motion */
     const wam7_real_t t91 = t34 - t35;
-    const wam7_real_t t92 = t1 * t1;
+    const wam7_real_t t92 = t1 * t1; /* link j2: motion */
     const wam7_real_t t93 = dq[1] * dq[1];
     const wam7_real_t t94 = WAM7_C(-9.81) * t10;
-    const wam7_real_t t95 = t94 + WAM7_C(0.55) * (t93 + t92);
-    const wam7_real_t t96 = t95 + WAM7_C(0.045) * t91;
+    const wam7_real_t t95 = t94 + WAM7_C(0.55) * (t93 + t92); /* link j3: motion */
+    const wam7_real_t t96 = t95 + WAM7_C(0.045) * t91; /* link j4: motion */
     const wam7_real_t t97 = t9 * t90 - t20 * t96;
-    const wam7_real_t t98 = t97 + (WAM7_C(-0.045) * t82 + WAM7_C(0.3) * t38);
+    const wam7_real_t t98 = t97 + (WAM7_C(-0.045) * t82 + WAM7_C(0.3) * t38); /* link j5: motion */
     const wam7_real_t t99 = t25 - t24;
-    const wam7_real_t t100 = t7 + t6;
-    const wam7_real_t t101 = t3 * t87 + t2 * t88;
-    const wam7_real_t t102 = t101 - WAM7_C(0.045) * t100;
-    const wam7_real_t t103 = t102 + (WAM7_C(-0.045) * t99 - WAM7_C(0.3) * t42);
+    const wam7_real_t t100 = t7 + t6; /* link j4: motion */
+    const wam7_real_t t101 = t3 * t87 + t2 * t88; /* link j3: motion */
+    const wam7_real_t t102 = t101 - WAM7_C(0.045) * t100; /* link j4: motion */
+    const wam7_real_t t103 = t102 + (WAM7_C(-0.045) * t99 - WAM7_C(0.3) * t42); /* link j5: motion */
     const wam7_real_t t104 = t26 * t98 - t27 * t103;
     const wam7_real_t t105 = t35 - t37;
-    const wam7_real_t t106 = t22 * t22;
-    const wam7_real_t t107 = t106 + t81;
-    const wam7_real_t t108 = t20 * t90 + t9 * t96;
-    const wam7_real_t t109 = t108 + (WAM7_C(0.045) * t105 + WAM7_C(0.3) * t107);
-    const wam7_real_t t110 = t32 * t104 + t48 * t109;
+    const wam7_real_t t106 = t22 * t22; /* link j4: motion */
+    const wam7_real_t t107 = t106 + t81; /* link j5: motion */
+    const wam7_real_t t108 = t20 * t90 + t9 * t96; /* link j4: motion */
+    const wam7_real_t t109 = t108 + (WAM7_C(0.045) * t105 + WAM7_C(0.3) * t107); /* link j5: motion */
+    const wam7_real_t t110 = t32 * t104 + t48 * t109; /* link j6: motion */
+    /* link j7: force and moment */
     const wam7_real_t t111 = t77 - parameters[YZ7R] * (t78 - t79) + parameters[MY7] * t110;
     const wam7_real_t t112 = t66 + t67;
     const wam7_real_t t113 = t74 + t75;
     const wam7_real_t t114 = t70 * (parameters[ZZ7] - parameters[XX7R]) + parameters[XY7] * t112
         + parameters[YZ7R] * t113;
-    const wam7_real_t t115 = t69 * t69;
+    const wam7_real_t t115 = t69 * t69; /* link j7: motion */
+    /* link j7: force and moment */
     const wam7_real_t t116 = t114 + parameters[XZ7R] * (t79 - t115) + parameters[MX7] * t110;
-    const wam7_real_t t117 = t74 - t73;
+    const wam7_real_t t117 = t74 - t73; /* link j7: motion */
     const wam7_real_t t118 = t58 - t60;
+    /* link j6: force and moment */
     const wam7_real_t t119 = parameters[ZZ6R] * t52 - parameters[XX6R] * t53 + parameters[XY6] * t117
         + parameters[XZ6] * t118;
-    const wam7_real_t t120 = t50 * t50;
+    const wam7_real_t t120 = t50 * t50; /* link j6: motion */
     const wam7_real_t t121 = t51 * t51;
-    const wam7_real_t t122 = t27 * t98 + t26 * t103;
+    const wam7_real_t t122 = t27 * t98 + t26 * t103; /* link j5: motion */
+    /* link j7: what it passes on */
     const wam7_real_t t123 = t119 + parameters[YZ6] * (t121 - t120) - parameters[MY6R] * t122 + (t55 * t111
         + t62 * t116);
-    const wam7_real_t t124 = t48 * t104 - t32 * t109;
+    const wam7_real_t t124 = t48 * t104 - t32 * t109; /* link j6: motion */
+    /* link j7: force and moment */
     const wam7_real_t t125 = parameters[MX7] * (t62 * t124 + t55 * t122) + parameters[MY7] * (t55 * t124
         - t62 * t122);
     const wam7_real_t t126 = parameters[ZZ7] * t74 + parameters[XX7R] * t75 - parameters[YZ7R] * t68
         + parameters[XZ7R] * t63;
     const wam7_real_t t127 = t126 + parameters[XY7] * (t115 - t78) + t125;
+    /* link j6: force and moment */
     const wam7_real_t t128 = t73 * (parameters[XX6R] - parameters[ZZ6R]) - parameters[XY6] * t54
         + parameters[YZ6] * t61;
-    const wam7_real_t t129 = t59 * t59;
+    const wam7_real_t t129 = t59 * t59; /* link j6: motion */
+    /* link j7: what it passes on */
     const wam7_real_t t130 = t128 + parameters[XZ6] * (t129 - t121) + parameters[MX6] * t122 + t127;
-    const wam7_real_t t131 = t58 - t57;
+    const wam7_real_t t131 = t58 - t57; /* link j6: motion */
     const wam7_real_t t132 = t30 - t25;
+    /* link j5: force and moment */
     const wam7_real_t t133 = parameters[XY5] * t131 - (parameters[XX5R] * t46 + parameters[ZZ5R] * t45)
         + parameters[XZ5] * t132;
-    const wam7_real_t t134 = t29 * t29;
+    const wam7_real_t t134 = t29 * t29; /* link j5: motion */
     const wam7_real_t t135 = t44 * t44;
+    /* link j6: what it passes on */
     const wam7_real_t t136 = t133 - parameters[YZ5] * (t134 - t135) + parameters[MY5R] * t109 - (t32 * t130
         - t48 * t123);
+    /* link j6: force and moment */
     const wam7_real_t t137 = parameters[XZ6] * t49 - (parameters[ZZ6R] * t58 + parameters[XX6R] * t60
         + parameters[YZ6] * t72);
     const wam7_real_t t138 = t137 + parameters[XY6] * (t129 - t120) + (parameters[MX6] * t110
         + parameters[MY6R] * t124);
-    const wam7_real_t t139 = t138 + (t55 * t116 - t62 * t111);
+    const wam7_real_t t139 = t138 + (t55 * t116 - t62 * t111); /* link j7: what it passes on */
+    /* link j5: force and moment */
     const wam7_real_t t140 = t57 * (parameters[ZZ5R] - parameters[XX5R]) + parameters[XY5] * t47
         + parameters[YZ5] * t31;
-    const wam7_real_t t141 = t28 * t28;
+    const wam7_real_t t141 = t28 * t28; /* link j5: motion */
+    /* link j6: what it passes on */
     const wam7_real_t t142 = t140 + parameters[XZ5] * (t135 - t141) + parameters[MX5] * t109 + t139;
+    /* link j7: force and moment */
     const wam7_real_t t143 = parameters[MX7] * (t78 + t79) + parameters[MY7] * t113;
     const wam7_real_t t144 = parameters[MX7] * t76 + parameters[MY7] * (t115 + t79);
+    /* link j7: what it passes on */
     const wam7_real_t t145 = parameters[MX6] * (t120 + t121) - parameters[MY6R] * t61 + (t55 * t143
         - t62 * t144);
     const wam7_real_t t146 = parameters[MX6] * t118 + parameters[MY6R] * (t129 + t121)
         + (parameters[MX7] * t71 + parameters[MY7] * t112);
+    /* link j6: what it passes on */
     const wam7_real_t t147 = t32 * t146 - t48 * t145 - (parameters[MX5] * (t134 + t135)
         + parameters[MY5R] * t31);
+    /* link j7: what it passes on */
     const wam7_real_t t148 = t62 * t143 + t55 * t144 - (parameters[MX6] * t117 + parameters[MY6R] * t54);
+    /* link j6: what it passes on */
     const wam7_real_t t149 = parameters[MX5] * t132 + parameters[MY5R] * (t141 + t135) + t148;
-    const wam7_real_t t150 = t27 * t147 - t26 * t149;
+    const wam7_real_t t150 = t27 * t147 - t26 * t149; /* link j5: what it passes on */
+    /* link j4: force and moment */
     const wam7_real_t t151 = parameters[ZZ4R] * t40 - parameters[XX4R] * t41 + parameters[XY4R] * t99
         + parameters[XZ4] * t105;
+    /* link j5: what it passes on */
     const wam7_real_t t152 = t151 + parameters[YZ4] * (t81 - t80) - parameters[MY4R] * t102 + (t26 * t136
         + t27 * t142 + WAM7_C(0.3) * t150);
+    /* link j5: force and moment */
     const wam7_real_t t153 = parameters[ZZ5R] * t25 + parameters[XX5R] * t30 - parameters[YZ5] * t56
         + parameters[XZ5] * t43;
     const wam7_real_t t154 = t153 + parameters[XY5] * (t141 - t134) + (parameters[MX5] * t122
         + parameters[MY5R] * t104);
-    const wam7_real_t t155 = t154 + (t32 * t123 + t48 * t130);
+    const wam7_real_t t155 = t154 + (t32 * t123 + t48 * t130); /* link j6: what it passes on */
+    /* link j4: force and moment */
     const wam7_real_t t156 = t24 * (parameters[XX4R] - parameters[ZZ4R]) - parameters[XY4R] * t42
         + parameters[YZ4] * t38;
+    /* link j5: what it passes on */
     const wam7_real_t t157 = t156 + parameters[XZ4] * (t106 - t81) + parameters[MX4R] * t102 + (t155
         + WAM7_C(-0.045) * t150);
+    /* link j3: force and moment */
     const wam7_real_t t158 = parameters[XZ3] * t100 - (parameters[XX3R] * t18 + parameters[ZZ3R] * t17
         + parameters[XY3R] * t91);
+    /* link j4: what it passes on */
     const wam7_real_t t159 = t158 - parameters[YZ3] * (t83 - t84) + parameters[MY3R] * t95 - (t20 * t157
         - t9 * t152);
-    const wam7_real_t t160 = t26 * t147 + t27 * t149;
+    const wam7_real_t t160 = t26 * t147 + t27 * t149; /* link j5: what it passes on */
+    /* link j6: what it passes on */
     const wam7_real_t t161 = parameters[MX5] * t131 + parameters[MY5R] * t47 + (t32 * t145 + t48 * t146);
+    /* link j5: what it passes on */
     const wam7_real_t t162 = t26 * t142 - t27 * t136 + (WAM7_C(0.045) * t161 + WAM7_C(0.3) * t160);
+    /* link j4: force and moment */
     const wam7_real_t t163 = parameters[XZ4] * t39 - (parameters[ZZ4R] * t35 + parameters[XX4R] * t37
         + parameters[YZ4] * t21);
     const wam7_real_t t164 = t163 + parameters[XY4R] * (t106 - t80) + (parameters[MX4R] * t108
         + parameters[MY4R] * t97);
-    const wam7_real_t t165 = t164 + t162;
+    const wam7_real_t t165 = t164 + t162; /* link j5: what it passes on */
     const wam7_real_t t166 = parameters[MY4R] * t38 - parameters[MX4R] * t82 + t160;
     const wam7_real_t t167 = parameters[MX4R] * t105 + parameters[MY4R] * t107 + t161;
+    /* link j3: force and moment */
     const wam7_real_t t168 = t34 * (parameters[ZZ3R] - parameters[XX3R]) + parameters[XY3R] * t19
         - parameters[YZ3] * t8;
-    const wam7_real_t t169 = t4 * t4;
+    const wam7_real_t t169 = t4 * t4; /* link j3: motion */
+    /* link j4: what it passes on */
     const wam7_real_t t170 = t168 + parameters[XZ3] * (t84 - t169) + parameters[MX3R] * t95 + (t165
         + WAM7_C(0.045) * (t20 * t166 - t9 * t167));
     const wam7_real_t t171 = parameters[MY3R] * t8 - parameters[MX3R] * t85 + (t9 * t166 + t20 * t167);
+    /* link j5: what it passes on */
     const wam7_real_t t172 = parameters[MX4R] * t99 + parameters[MY4R] * t42 + t150;
+    /* link j4: what it passes on */
     const wam7_real_t t173 = parameters[MX3R] * t100 + parameters[MY3R] * (t169 + t84) - t172;
+    /* link j3: what it passes on */
     const wam7_real_t t174 = t2 * t159 + t3 * t170 + WAM7_C(0.55) * (t3 * t171 - t2 * t173);
+    /* link j2: force and moment */
     const wam7_real_t t175 = parameters[XX2R] * t13 + parameters[ZZ2R] * t13
         + parameters[XY2] * (WAM7_C(-2.0) * t7);
-    const wam7_real_t t176 = t11 * t11;
+    const wam7_real_t t176 = t11 * t11; /* link j2: motion */
+    /* link j3: what it passes on */
     const wam7_real_t t177 = t175 - parameters[XZ2] * t12 + parameters[YZ2] * (t93 - t176) + t174;
+    /* link j3: force and moment */
     const wam7_real_t t178 = parameters[XX3R] * t6 - parameters[ZZ3R] * t7 - parameters[YZ3] * t33
         + parameters[XZ3] * t15;
     const wam7_real_t t179 = t178 + parameters[XY3R] * (t169 - t83) + (parameters[MX3R] * t101
         + parameters[MY3R] * t89);
+    /* link j4: what it passes on */
     const wam7_real_t t180 = t179 + (t20 * t152 + t9 * t157 + WAM7_C(0.045) * t172);
+    /* link j2: force and moment */
     const wam7_real_t t181 = t7 * (parameters[XX2R] - parameters[ZZ2R]) - parameters[XY2] * t14
         + parameters[YZ2] * t12;
+    /* link j2: what it passes on */
     const wam7_real_t t182 = t0 * t177 + t10 * (t181 + parameters[XZ2] * (t92 - t93) + t180);
-    const wam7_real_t t183 = wam7_sign(dq[0]);
+    const wam7_real_t t183 = wam7_sign(dq[0]); /* joint j1: coulomb_friction */
     const wam7_real_t t184 = WAM7_C(2.1881838074398248) * (parameters[FV1] * (WAM7_C(42.0) * dq[0])
         + parameters[FC1] * t183) + WAM7_C(0.05209961446285298) * t182;
     out[0] = t184;
+    /* link j3: what it passes on */
     const wam7_real_t t185 = t2 * t170 - t3 * t159 + WAM7_C(0.55) * (t2 * t171 + t3 * t173);
+    /* link j2: force and moment */
     const wam7_real_t t186 = parameters[XY2] * (t92 - t176) - parameters[XX2R] * t12 + (parameters[MX2] * t94
         + parameters[MY2R] * t86);
-    const wam7_real_t t187 = wam7_sign(dq[1]);
+    const wam7_real_t t187 = wam7_sign(dq[1]); /* joint j2: coulomb_friction */
     const wam7_real_t t188 = WAM7_C(2.1881838074398248) * (parameters[FV2] * (WAM7_C(28.25) * dq[1])
         + parameters[FC2] * t187) + WAM7_C(0.07745783389167521) * (t186 + t185);
     out[1] = t188;
-    const wam7_real_t t189 = wam7_sign(dq[2]);
+    const wam7_real_t t189 = wam7_sign(dq[2]); /* joint j3: coulomb_friction */
     const wam7_real_t t190 = WAM7_C(2.1881838074398248) * (parameters[FV3] * (WAM7_C(28.25) * dq[2])
         + parameters[FC3] * t189) + WAM7_C(0.07745783389167521) * t180;
     out[2] = t190;
-    const wam7_real_t t191 = wam7_sign(dq[3]);
+    const wam7_real_t t191 = wam7_sign(dq[3]); /* joint j4: coulomb_friction */
     const wam7_real_t t192 = WAM7_C(2.1881838074398248) * (parameters[FV4] * (WAM7_C(18.0) * dq[3])
         + parameters[FC4] * t191) + WAM7_C(0.12156576707999026) * t165;
     out[3] = t192;
-    const wam7_real_t t193 = wam7_sign(dq[4]);
+    const wam7_real_t t193 = wam7_sign(dq[4]); /* joint j5: coulomb_friction */
     const wam7_real_t t194 = WAM7_C(4.237288135593221) * (parameters[FV5] * (WAM7_C(9.48) * dq[4])
         + parameters[FC5] * t193) + WAM7_C(0.4469713223199599) * t155;
     out[4] = t194;
-    const wam7_real_t t195 = wam7_sign(dq[5]);
+    const wam7_real_t t195 = wam7_sign(dq[5]); /* joint j6: coulomb_friction */
     const wam7_real_t t196 = WAM7_C(4.237288135593221) * (parameters[FV6] * (WAM7_C(9.48) * dq[5])
         + parameters[FC6] * t195) + WAM7_C(0.4469713223199599) * t139;
     out[5] = t196;
-    const wam7_real_t t197 = wam7_sign(dq[6]);
+    const wam7_real_t t197 = wam7_sign(dq[6]); /* joint j7: coulomb_friction */
     const wam7_real_t t198 = WAM7_C(14.925373134328357) * (parameters[FV7] * (WAM7_C(14.93) * dq[6])
         + parameters[FC7] * t197) + WAM7_C(0.9996900960702182) * t127;
     out[6] = t198;

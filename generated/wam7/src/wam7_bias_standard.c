@@ -6,7 +6,7 @@
  * Arm wam7, description 552353c9ea1f05cf.
  * SPDX-License-Identifier: 0BSD
  *
- * Operations: 727 (381 mul, 346 add, 0 neg), 12 trig, 7 other.
+ * Operations: 727 (381 mul, 346 add, 0 neg), 12 trig, 7 other calls (sign, select and the like).
  *
  * @param[in]   q           [7]   [rad]    joint coordinates; norm at most 10000
  * @param[in]   dq          [7]   [rad/s]  joint velocities; norm at most 100000
@@ -119,11 +119,11 @@
  */
 #include "wam7_private.h"
 
-#if WAM7_GENERATION != 0x7A21915FUL
+#if WAM7_GENERATION != 0x0E2B7B26UL
 #error "wam7.h and wam7_bias_standard.c are of different generations: generate the arm again"
 #endif
 
-int wam7_bias_standard(
+wam7_status_t wam7_bias_standard(
     const wam7_real_t q[WAM7_N_JOINTS],
     const wam7_real_t dq[WAM7_N_JOINTS],
     const wam7_real_t parameters[WAM7_N_STANDARD_PARAMETERS],
@@ -134,7 +134,7 @@ int wam7_bias_standard(
         XX5, XY5, XZ5, YY5, YZ5, ZZ5, MX5, MY5, MZ5, M5, XX6, XY6, XZ6, YY6, YZ6, ZZ6, MX6, MY6, MZ6, M6, XX7,
         XY7, XZ7, YY7, YZ7, ZZ7, MX7, MY7, MZ7, M7, FV1, FC1, IA1, FV2, FC2, IA2, FV3, FC3, IA3, FV4, FC4,
         IA4, FV5, FC5, IA5, FV6, FC6, IA6, FV7, FC7, IA7 };
-    int status = WAM7_STATUS_OK;
+    wam7_status_t status = WAM7_STATUS_OK;
 
     if (!wam7_within_joints(q, WAM7_C(1.0e8))
         || !wam7_within_joints(dq, WAM7_C(1.0e10))
@@ -158,57 +158,57 @@ int wam7_bias_standard(
     WAM7_SINCOS(q[5], &t32, &t48);
     wam7_real_t t62, t55;
     WAM7_SINCOS(q[6], &t62, &t55);
-    const wam7_real_t t1 = t0 * dq[0];
-    const wam7_real_t t4 = t3 * dq[1] - t2 * t1;
-    const wam7_real_t t7 = t6 * dq[0];
-    const wam7_real_t t8 = dq[2] + t7;
-    const wam7_real_t t10 = t9 * t8 - t5 * t4;
-    const wam7_real_t t12 = t3 * t1 + t2 * dq[1];
-    const wam7_real_t t13 = dq[3] + t12;
-    const wam7_real_t t15 = t14 * t13 - t11 * t10;
+    const wam7_real_t t1 = t0 * dq[0]; /* link j2: motion */
+    const wam7_real_t t4 = t3 * dq[1] - t2 * t1; /* link j3: motion */
+    const wam7_real_t t7 = t6 * dq[0]; /* link j2: motion */
+    const wam7_real_t t8 = dq[2] + t7; /* link j3: motion */
+    const wam7_real_t t10 = t9 * t8 - t5 * t4; /* link j4: motion */
+    const wam7_real_t t12 = t3 * t1 + t2 * dq[1]; /* link j3: motion */
+    const wam7_real_t t13 = dq[3] + t12; /* link j4: motion */
+    const wam7_real_t t15 = t14 * t13 - t11 * t10; /* link j5: motion */
     const wam7_real_t t16 = t14 * t10 + t11 * t13;
     const wam7_real_t t17 = t15 * t16;
-    const wam7_real_t t18 = t4 * t12;
-    const wam7_real_t t19 = dq[1] * t1;
-    const wam7_real_t t20 = t19 + t18;
-    const wam7_real_t t21 = t12 * t8;
-    const wam7_real_t t22 = t1 * t7;
+    const wam7_real_t t18 = t4 * t12; /* link j3: motion */
+    const wam7_real_t t19 = dq[1] * t1; /* link j2: motion */
+    const wam7_real_t t20 = t19 + t18; /* link j4: motion */
+    const wam7_real_t t21 = t12 * t8; /* link j3: motion */
+    const wam7_real_t t22 = t1 * t7; /* link j2: motion */
     const wam7_real_t t23 = dq[1] * t7;
     const wam7_real_t t24 = WAM7_C(2.0) * t23;
-    const wam7_real_t t25 = t3 * t22 + t2 * t24;
+    const wam7_real_t t25 = t3 * t22 + t2 * t24; /* link j3: motion */
     const wam7_real_t t26 = t21 - t25;
-    const wam7_real_t t27 = t21 + t26;
+    const wam7_real_t t27 = t21 + t26; /* link j4: motion */
     const wam7_real_t t28 = t5 * t20 - t9 * t27;
     const wam7_real_t t29 = t10 * t13;
     const wam7_real_t t30 = t29 + t28;
-    const wam7_real_t t31 = t17 + t30;
-    const wam7_real_t t33 = t9 * t4 + t5 * t8;
+    const wam7_real_t t31 = t17 + t30; /* link j6: motion */
+    const wam7_real_t t33 = t9 * t4 + t5 * t8; /* link j4: motion */
     const wam7_real_t t34 = t10 * t33;
-    const wam7_real_t t35 = t4 * t8;
+    const wam7_real_t t35 = t4 * t8; /* link j3: motion */
     const wam7_real_t t36 = t2 * t22 - t3 * t24;
     const wam7_real_t t37 = t35 + t36;
-    const wam7_real_t t38 = t34 + t37;
-    const wam7_real_t t39 = t9 * t20 + t5 * t27;
+    const wam7_real_t t38 = t34 + t37; /* link j5: motion */
+    const wam7_real_t t39 = t9 * t20 + t5 * t27; /* link j4: motion */
     const wam7_real_t t40 = t33 * t13;
     const wam7_real_t t41 = t39 - t40;
-    const wam7_real_t t42 = t41 - t40;
+    const wam7_real_t t42 = t41 - t40; /* link j5: motion */
     const wam7_real_t t43 = t11 * t42 - t14 * t38;
     const wam7_real_t t44 = dq[4] + t33;
     const wam7_real_t t45 = t16 * t44;
     const wam7_real_t t46 = t45 + t43;
-    const wam7_real_t t47 = t45 + t46;
+    const wam7_real_t t47 = t45 + t46; /* link j6: motion */
     const wam7_real_t t49 = t32 * t31 + t48 * t47;
     const wam7_real_t t50 = t32 * t15 + t48 * t44;
     const wam7_real_t t51 = dq[5] + t16;
     const wam7_real_t t52 = t50 * t51;
     const wam7_real_t t53 = t52 - t49;
-    const wam7_real_t t54 = t52 + t53;
-    const wam7_real_t t56 = t11 * t38 + t14 * t42;
+    const wam7_real_t t54 = t52 + t53; /* link j7: motion */
+    const wam7_real_t t56 = t11 * t38 + t14 * t42; /* link j5: motion */
     const wam7_real_t t57 = t15 * t44;
     const wam7_real_t t58 = t57 + t56;
-    const wam7_real_t t59 = t32 * t44 - t48 * t15;
+    const wam7_real_t t59 = t32 * t44 - t48 * t15; /* link j6: motion */
     const wam7_real_t t60 = t59 * t50;
-    const wam7_real_t t61 = t60 + t58;
+    const wam7_real_t t61 = t60 + t58; /* link j7: motion */
     const wam7_real_t t63 = t62 * t61 + t55 * t54;
     const wam7_real_t t64 = t62 * t59 + t55 * t51;
     const wam7_real_t t65 = dq[6] + t50;
@@ -218,213 +218,259 @@ int wam7_bias_standard(
     const wam7_real_t t69 = t62 * t51 - t55 * t59;
     const wam7_real_t t70 = t69 * t65;
     const wam7_real_t t71 = t70 - t68;
-    const wam7_real_t t72 = t70 + t71;
+    const wam7_real_t t72 = t70 + t71; /* link j7: force and moment */
     const wam7_real_t t73 = parameters[XX7] * t67 - t66 * (parameters[YY7] - parameters[ZZ7])
         - parameters[XY7] * t72;
-    const wam7_real_t t74 = t32 * t47 - t48 * t31;
+    const wam7_real_t t74 = t32 * t47 - t48 * t31; /* link j6: motion */
     const wam7_real_t t75 = t59 * t51;
     const wam7_real_t t76 = t74 - t75;
-    const wam7_real_t t77 = t69 * t64;
-    const wam7_real_t t78 = t77 + t76;
-    const wam7_real_t t79 = t64 * t64;
+    const wam7_real_t t77 = t69 * t64; /* link j7: motion */
+    const wam7_real_t t78 = t77 + t76; /* link j7: force and moment */
+    const wam7_real_t t79 = t64 * t64; /* link j7: motion */
     const wam7_real_t t80 = t65 * t65;
-    const wam7_real_t t81 = t33 * t33;
+    const wam7_real_t t81 = t33 * t33; /* link j4: motion */
     const wam7_real_t t82 = t13 * t13;
-    const wam7_real_t t83 = t81 + t82;
-    const wam7_real_t t84 = t12 * t12;
+    const wam7_real_t t83 = t81 + t82; /* link j5: motion */
+    const wam7_real_t t84 = t12 * t12; /* link j3: motion */
     const wam7_real_t t85 = t8 * t8;
-    const wam7_real_t t86 = t84 + t85;
-    const wam7_real_t t87 = WAM7_C(9.81) * t0;
-    const wam7_real_t t88 = t87 + WAM7_C(0.55) * t22;
+    const wam7_real_t t86 = t84 + t85; /* link j4: motion */
+    const wam7_real_t t87 = WAM7_C(9.81) * t0; /* link j2: motion */
+    const wam7_real_t t88 = t87 + WAM7_C(0.55) * t22; /* link j3: motion */
     const wam7_real_t t89 = WAM7_C(1.1) * t23;
     const wam7_real_t t90 = t2 * t88 - t3 * t89;
-    const wam7_real_t t91 = WAM7_C(0.045) * t86 + t90;
+    const wam7_real_t t91 = WAM7_C(0.045) * t86 + t90; /* link j4: motion */
     const wam7_real_t t92 = t35 + t37;
-    const wam7_real_t t93 = t1 * t1;
+    const wam7_real_t t93 = t1 * t1; /* link j2: motion */
     const wam7_real_t t94 = dq[1] * dq[1];
     const wam7_real_t t95 = WAM7_C(-9.81) * t6;
-    const wam7_real_t t96 = t95 + WAM7_C(0.55) * (t93 + t94);
-    const wam7_real_t t97 = t96 + WAM7_C(-0.045) * t92;
+    const wam7_real_t t96 = t95 + WAM7_C(0.55) * (t93 + t94); /* link j3: motion */
+    const wam7_real_t t97 = t96 + WAM7_C(-0.045) * t92; /* link j4: motion */
     const wam7_real_t t98 = t5 * t91 - t9 * t97;
-    const wam7_real_t t99 = t98 + (WAM7_C(-0.045) * t83 + WAM7_C(0.3) * t38);
+    const wam7_real_t t99 = t98 + (WAM7_C(-0.045) * t83 + WAM7_C(0.3) * t38); /* link j5: motion */
     const wam7_real_t t100 = t29 + t30;
-    const wam7_real_t t101 = t18 - t19;
-    const wam7_real_t t102 = t3 * t88 + t2 * t89;
-    const wam7_real_t t103 = t102 + WAM7_C(0.045) * t101;
-    const wam7_real_t t104 = t103 + (WAM7_C(0.045) * t100 - WAM7_C(0.3) * t42);
+    const wam7_real_t t101 = t18 - t19; /* link j4: motion */
+    const wam7_real_t t102 = t3 * t88 + t2 * t89; /* link j3: motion */
+    const wam7_real_t t103 = t102 + WAM7_C(0.045) * t101; /* link j4: motion */
+    const wam7_real_t t104 = t103 + (WAM7_C(0.045) * t100 - WAM7_C(0.3) * t42); /* link j5: motion */
     const wam7_real_t t105 = t14 * t99 + t11 * t104;
-    const wam7_real_t t106 = t105 + WAM7_C(0.06) * t54;
-    const wam7_real_t t107 = t11 * t99 - t14 * t104;
-    const wam7_real_t t108 = t10 * t10;
-    const wam7_real_t t109 = t108 + t82;
+    const wam7_real_t t106 = t105 + WAM7_C(0.06) * t54; /* link j7: motion */
+    const wam7_real_t t107 = t11 * t99 - t14 * t104; /* link j5: motion */
+    const wam7_real_t t108 = t10 * t10; /* link j4: motion */
+    const wam7_real_t t109 = t108 + t82; /* link j5: motion */
     const wam7_real_t t110 = t37 - t34;
-    const wam7_real_t t111 = t9 * t91 + t5 * t97;
-    const wam7_real_t t112 = t111 + (WAM7_C(0.3) * t109 + WAM7_C(0.045) * t110);
-    const wam7_real_t t113 = t48 * t107 - t32 * t112;
-    const wam7_real_t t114 = t113 - WAM7_C(-0.06) * t61;
+    const wam7_real_t t111 = t9 * t91 + t5 * t97; /* link j4: motion */
+    const wam7_real_t t112 = t111 + (WAM7_C(0.3) * t109 + WAM7_C(0.045) * t110); /* link j5: motion */
+    const wam7_real_t t113 = t48 * t107 - t32 * t112; /* link j6: motion */
+    const wam7_real_t t114 = t113 - WAM7_C(-0.06) * t61; /* link j7: motion */
     const wam7_real_t t115 = t62 * t114 + t55 * t106;
-    const wam7_real_t t116 = t32 * t107 + t48 * t112;
+    const wam7_real_t t116 = t32 * t107 + t48 * t112; /* link j6: motion */
     const wam7_real_t t117 = t59 * t59;
     const wam7_real_t t118 = t51 * t51;
-    const wam7_real_t t119 = t117 + t118;
+    const wam7_real_t t119 = t117 + t118; /* link j7: motion */
     const wam7_real_t t120 = WAM7_C(0.06) * t119 + t116;
+    /* link j7: force and moment */
     const wam7_real_t t121 = t73 + parameters[XZ7] * t78 + (t79 - t80) * parameters[YZ7]
         - (parameters[MY7] * t120 + parameters[MZ7] * t115);
     const wam7_real_t t122 = t66 + t67;
     const wam7_real_t t123 = parameters[XY7] * t122 - (parameters[YY7] * t71 + t70 * (parameters[ZZ7]
         - parameters[XX7]));
     const wam7_real_t t124 = t76 - t77;
-    const wam7_real_t t125 = t69 * t69;
+    const wam7_real_t t125 = t69 * t69; /* link j7: motion */
     const wam7_real_t t126 = t62 * t106 - t55 * t114;
+    /* link j7: force and moment */
     const wam7_real_t t127 = t123 + parameters[YZ7] * t124 + (t80 - t125) * parameters[XZ7]
         + (parameters[MZ7] * t126 + parameters[MX7] * t120);
     const wam7_real_t t128 = parameters[MZ7] * t68 - ((t79 + t80) * parameters[MX7] + parameters[MY7] * t124);
     const wam7_real_t t129 = parameters[M7] * t126 + t128;
     const wam7_real_t t130 = (t125 + t80) * parameters[MY7] - parameters[MX7] * t78 - parameters[MZ7] * t63;
     const wam7_real_t t131 = parameters[M7] * t115 - t130;
-    const wam7_real_t t132 = t62 * t129 + t55 * t131;
-    const wam7_real_t t133 = t76 - t75;
+    const wam7_real_t t132 = t62 * t129 + t55 * t131; /* link j7: what it passes on */
+    const wam7_real_t t133 = t76 - t75; /* link j7: motion */
+    /* link j6: force and moment */
     const wam7_real_t t134 = parameters[XX6] * t53 - t52 * (parameters[YY6] - parameters[ZZ6])
         + parameters[XY6] * t133;
-    const wam7_real_t t135 = t58 - t60;
-    const wam7_real_t t136 = t50 * t50;
+    const wam7_real_t t135 = t58 - t60; /* link j7: motion */
+    const wam7_real_t t136 = t50 * t50; /* link j6: motion */
+    /* link j6: force and moment */
     const wam7_real_t t137 = t134 + parameters[XZ6] * t135 + (t118 - t136) * parameters[YZ6]
         + (parameters[MZ6] * t116 - parameters[MY6] * t105);
+    /* link j7: what it passes on */
     const wam7_real_t t138 = t137 + (t62 * t127 - t55 * t121 + WAM7_C(0.06) * t132);
+    /* link j6: force and moment */
     const wam7_real_t t139 = parameters[YY6] * t76 + t75 * (parameters[XX6] - parameters[ZZ6])
         + parameters[XY6] * t54;
     const wam7_real_t t140 = t139 + parameters[YZ6] * t61 + (t117 - t118) * parameters[XZ6]
         + (parameters[MZ6] * t113 + parameters[MX6] * t105);
+    /* link j7: force and moment */
     const wam7_real_t t141 = parameters[ZZ7] * t76 - t77 * (parameters[XX7] - parameters[YY7])
         + parameters[YZ7] * t68;
     const wam7_real_t t142 = t141 - parameters[XZ7] * t63 + (t125 - t79) * parameters[XY7]
         + (parameters[MX7] * t115 - parameters[MY7] * t126);
-    const wam7_real_t t143 = t140 + t142;
-    const wam7_real_t t144 = t57 + t58;
+    const wam7_real_t t143 = t140 + t142; /* link j7: what it passes on */
+    const wam7_real_t t144 = t57 + t58; /* link j6: motion */
+    /* link j5: force and moment */
     const wam7_real_t t145 = parameters[XX5] * t46 - t45 * (parameters[YY5] - parameters[ZZ5])
         - parameters[XY5] * t144;
-    const wam7_real_t t146 = t30 - t17;
-    const wam7_real_t t147 = t16 * t16;
+    const wam7_real_t t146 = t30 - t17; /* link j6: motion */
+    const wam7_real_t t147 = t16 * t16; /* link j5: motion */
     const wam7_real_t t148 = t44 * t44;
+    /* link j5: force and moment */
     const wam7_real_t t149 = t145 - parameters[XZ5] * t146 + (t147 - t148) * parameters[YZ5]
         - (parameters[MY5] * t112 + parameters[MZ5] * t105);
-    const wam7_real_t t150 = t149 + (t32 * t143 - t48 * t138);
-    const wam7_real_t t151 = t55 * t129 - t62 * t131;
+    const wam7_real_t t150 = t149 + (t32 * t143 - t48 * t138); /* link j6: what it passes on */
+    const wam7_real_t t151 = t55 * t129 - t62 * t131; /* link j7: what it passes on */
+    /* link j6: force and moment */
     const wam7_real_t t152 = parameters[ZZ6] * t58 + t60 * (parameters[XX6] - parameters[YY6])
         + parameters[YZ6] * t74;
     const wam7_real_t t153 = parameters[XZ6] * t49 - t152 + (t117 - t136) * parameters[XY6]
         + (parameters[MX6] * t116 + parameters[MY6] * t113);
+    /* link j7: what it passes on */
     const wam7_real_t t154 = t153 + (t62 * t121 + t55 * t127 + WAM7_C(0.06) * t151);
+    /* link j5: force and moment */
     const wam7_real_t t155 = parameters[XY5] * t47 - (parameters[YY5] * t58 + t57 * (parameters[ZZ5]
         - parameters[XX5]));
-    const wam7_real_t t156 = t15 * t15;
+    const wam7_real_t t156 = t15 * t15; /* link j5: motion */
+    /* link j5: force and moment */
     const wam7_real_t t157 = t155 - parameters[YZ5] * t31 + (t148 - t156) * parameters[XZ5]
         + (parameters[MX5] * t112 - parameters[MZ5] * t107);
-    const wam7_real_t t158 = t157 + t154;
+    const wam7_real_t t158 = t157 + t154; /* link j6: what it passes on */
+    /* link j6: force and moment */
     const wam7_real_t t159 = (t136 + t118) * parameters[MX6] - parameters[MY6] * t61 + parameters[MZ6] * t74;
-    const wam7_real_t t160 = parameters[M6] * t113 + t159 - t151;
+    const wam7_real_t t160 = parameters[M6] * t113 + t159 - t151; /* link j7: what it passes on */
+    /* link j6: force and moment */
     const wam7_real_t t161 = parameters[MX6] * t135 + t119 * parameters[MY6] + parameters[MZ6] * t49
         - parameters[M6] * t116;
+    /* link j7: force and moment */
     const wam7_real_t t162 = parameters[MX7] * t72 + parameters[MY7] * t122 - (t125 + t79) * parameters[MZ7];
-    const wam7_real_t t163 = t161 + (t162 - parameters[M7] * t120);
+    const wam7_real_t t163 = t161 + (t162 - parameters[M7] * t120); /* link j7: what it passes on */
+    /* link j5: force and moment */
     const wam7_real_t t164 = parameters[MY5] * t31 - (t147 + t148) * parameters[MX5] - parameters[MZ5] * t56;
+    /* link j6: what it passes on */
     const wam7_real_t t165 = t164 - parameters[M5] * t107 + (t32 * t163 - t48 * t160);
+    /* link j6: force and moment */
     const wam7_real_t t166 = parameters[MY6] * t54 - parameters[MX6] * t133 + (t117 + t136) * parameters[MZ6];
+    /* link j5: force and moment */
     const wam7_real_t t167 = parameters[MX5] * t146 + (t156 + t148) * parameters[MY5] + parameters[MZ5] * t43;
+    /* link j6: what it passes on */
     const wam7_real_t t168 = parameters[M5] * t105 - t167 + (parameters[M6] * t105 - t166 + t132);
-    const wam7_real_t t169 = t14 * t165 + t11 * t168;
+    const wam7_real_t t169 = t14 * t165 + t11 * t168; /* link j5: what it passes on */
+    /* link j4: force and moment */
     const wam7_real_t t170 = parameters[XX4] * t41 + t40 * (parameters[YY4] - parameters[ZZ4])
         + parameters[XY4] * t100;
     const wam7_real_t t171 = parameters[XZ4] * t110 - t170 + (t82 - t81) * parameters[YZ4]
         + (parameters[MZ4] * t111 - parameters[MY4] * t103);
+    /* link j5: what it passes on */
     const wam7_real_t t172 = t171 + (t14 * t158 - t11 * t150 + WAM7_C(0.3) * t169);
+    /* link j5: force and moment */
     const wam7_real_t t173 = parameters[ZZ5] * t30 + t17 * (parameters[XX5] - parameters[YY5])
         + parameters[YZ5] * t56;
     const wam7_real_t t174 = parameters[XZ5] * t43 - t173 + (t156 - t147) * parameters[XY5]
         + (parameters[MX5] * t105 + parameters[MY5] * t107);
-    const wam7_real_t t175 = t174 + (t32 * t138 + t48 * t143);
+    const wam7_real_t t175 = t174 + (t32 * t138 + t48 * t143); /* link j6: what it passes on */
+    /* link j4: force and moment */
     const wam7_real_t t176 = t29 * (parameters[XX4] - parameters[ZZ4]) - parameters[YY4] * t30
         - parameters[XY4] * t42;
     const wam7_real_t t177 = t176 + parameters[YZ4] * t38 + (t108 - t82) * parameters[XZ4]
         + (parameters[MZ4] * t98 + parameters[MX4] * t103);
-    const wam7_real_t t178 = t177 + (t175 + WAM7_C(-0.045) * t169);
+    const wam7_real_t t178 = t177 + (t175 + WAM7_C(-0.045) * t169); /* link j5: what it passes on */
+    /* link j3: force and moment */
     const wam7_real_t t179 = parameters[XX3] * t26 - t21 * (parameters[YY3] - parameters[ZZ3])
         - parameters[XY3] * t92;
     const wam7_real_t t180 = t179 + parameters[XZ3] * t101 + (t84 - t85) * parameters[YZ3]
         - (t96 * parameters[MY3] + parameters[MZ3] * t102);
-    const wam7_real_t t181 = t180 + (t9 * t178 - t5 * t172);
-    const wam7_real_t t182 = t11 * t165 - t14 * t168;
+    const wam7_real_t t181 = t180 + (t9 * t178 - t5 * t172); /* link j4: what it passes on */
+    const wam7_real_t t182 = t11 * t165 - t14 * t168; /* link j5: what it passes on */
+    /* link j5: force and moment */
     const wam7_real_t t183 = parameters[MX5] * t144 + parameters[MY5] * t47 - (t156 + t147) * parameters[MZ5];
+    /* link j6: what it passes on */
     const wam7_real_t t184 = t183 - parameters[M5] * t112 + (t32 * t160 + t48 * t163);
+    /* link j5: what it passes on */
     const wam7_real_t t185 = t14 * t150 + t11 * t158 + (WAM7_C(0.045) * t184 + WAM7_C(0.3) * t182);
+    /* link j4: force and moment */
     const wam7_real_t t186 = parameters[YZ4] * t28 - (parameters[ZZ4] * t37 + t34 * (parameters[XX4]
         - parameters[YY4]));
     const wam7_real_t t187 = t186 + parameters[XZ4] * t39 + (t108 - t81) * parameters[XY4]
         + (parameters[MX4] * t111 + parameters[MY4] * t98);
-    const wam7_real_t t188 = t187 + t185;
+    const wam7_real_t t188 = t187 + t185; /* link j5: what it passes on */
+    /* link j4: force and moment */
     const wam7_real_t t189 = parameters[MY4] * t38 - t83 * parameters[MX4] + parameters[MZ4] * t28
         - parameters[M4] * t98;
-    const wam7_real_t t190 = t189 + t182;
+    const wam7_real_t t190 = t189 + t182; /* link j5: what it passes on */
+    /* link j4: force and moment */
     const wam7_real_t t191 = parameters[M4] * t111 - (parameters[MX4] * t110 + t109 * parameters[MY4]
         + parameters[MZ4] * t39);
-    const wam7_real_t t192 = t191 - t184;
+    const wam7_real_t t192 = t191 - t184; /* link j5: what it passes on */
+    /* link j3: force and moment */
     const wam7_real_t t193 = parameters[XY3] * t27 - (parameters[YY3] * t37 + t35 * (parameters[ZZ3]
         - parameters[XX3]));
-    const wam7_real_t t194 = t4 * t4;
+    const wam7_real_t t194 = t4 * t4; /* link j3: motion */
+    /* link j3: force and moment */
     const wam7_real_t t195 = t193 - parameters[YZ3] * t20 + (t85 - t194) * parameters[XZ3]
         + (t96 * parameters[MX3] - parameters[MZ3] * t90);
+    /* link j4: what it passes on */
     const wam7_real_t t196 = t195 + (t188 + WAM7_C(0.045) * (t9 * t190 + t5 * t192));
+    /* link j3: force and moment */
     const wam7_real_t t197 = parameters[MY3] * t20 - t86 * parameters[MX3] - parameters[MZ3] * t36
         - parameters[M3] * t90;
-    const wam7_real_t t198 = t197 + (t5 * t190 - t9 * t192);
+    const wam7_real_t t198 = t197 + (t5 * t190 - t9 * t192); /* link j4: what it passes on */
+    /* link j4: force and moment */
     const wam7_real_t t199 = parameters[MY4] * t42 - parameters[MX4] * t100 - (t108 + t81) * parameters[MZ4];
-    const wam7_real_t t200 = parameters[M4] * t103 + t199 + t169;
+    const wam7_real_t t200 = parameters[M4] * t103 + t199 + t169; /* link j5: what it passes on */
+    /* link j3: force and moment */
     const wam7_real_t t201 = (t194 + t85) * parameters[MY3] - parameters[MX3] * t101 - parameters[MZ3] * t25;
-    const wam7_real_t t202 = parameters[M3] * t102 - t201 + t200;
+    const wam7_real_t t202 = parameters[M3] * t102 - t201 + t200; /* link j4: what it passes on */
+    /* link j3: what it passes on */
     const wam7_real_t t203 = t3 * t196 - t2 * t181 + WAM7_C(0.55) * (t3 * t198 + t2 * t202);
+    /* link j2: force and moment */
     const wam7_real_t t204 = t23 * parameters[XX2] + t23 * (parameters[ZZ2] - parameters[YY2])
         + WAM7_C(-2.0) * t19 * parameters[XY2];
-    const wam7_real_t t205 = t7 * t7;
+    const wam7_real_t t205 = t7 * t7; /* link j2: motion */
+    /* link j2: force and moment */
     const wam7_real_t t206 = t204 - t22 * parameters[XZ2] + (t94 - t205) * parameters[YZ2]
         + t95 * parameters[MZ2];
+    /* link j3: force and moment */
     const wam7_real_t t207 = t19 * parameters[ZZ3] + t18 * (parameters[XX3] - parameters[YY3])
         + parameters[YZ3] * t36;
     const wam7_real_t t208 = (t194 - t84) * parameters[XY3] - (t207 + parameters[XZ3] * t25)
         + (parameters[MX3] * t102 + parameters[MY3] * t90);
+    /* link j4: what it passes on */
     const wam7_real_t t209 = t208 + (t9 * t172 + t5 * t178 + WAM7_C(0.045) * t200);
+    /* link j2: force and moment */
     const wam7_real_t t210 = t19 * (parameters[XX2] - parameters[ZZ2]) - t19 * parameters[YY2]
         + t24 * parameters[XY2];
     const wam7_real_t t211 = t210 + t22 * parameters[YZ2] + (t93 - t94) * parameters[XZ2]
         + t87 * parameters[MZ2];
     const wam7_real_t t212 = WAM7_C(0.05209961446285298) * (t0 * (t206 + t203) + t6 * (t211 + t209));
-    const wam7_real_t t213 = wam7_sign(dq[0]);
+    const wam7_real_t t213 = wam7_sign(dq[0]); /* joint j1: coulomb_friction */
     const wam7_real_t t214 = WAM7_C(2.1881838074398248) * (WAM7_C(42.0) * dq[0] * parameters[FV1]
         + t213 * parameters[FC1]) + t212;
     out[0] = t214;
+    /* link j3: what it passes on */
     const wam7_real_t t215 = t3 * t181 + t2 * t196 + WAM7_C(0.55) * (t2 * t198 - t3 * t202);
+    /* link j2: force and moment */
     const wam7_real_t t216 = t22 * (parameters[YY2] - parameters[XX2]) + (t93 - t205) * parameters[XY2]
         + (t95 * parameters[MX2] + t87 * parameters[MY2]);
-    const wam7_real_t t217 = wam7_sign(dq[1]);
+    const wam7_real_t t217 = wam7_sign(dq[1]); /* joint j2: coulomb_friction */
     const wam7_real_t t218 = WAM7_C(2.1881838074398248) * (WAM7_C(28.25) * dq[1] * parameters[FV2]
         + t217 * parameters[FC2]) + WAM7_C(0.07745783389167521) * (t216 + t215);
     out[1] = t218;
-    const wam7_real_t t219 = wam7_sign(dq[2]);
+    const wam7_real_t t219 = wam7_sign(dq[2]); /* joint j3: coulomb_friction */
     const wam7_real_t t220 = WAM7_C(2.1881838074398248) * (WAM7_C(28.25) * dq[2] * parameters[FV3]
         + t219 * parameters[FC3]) + WAM7_C(0.07745783389167521) * t209;
     out[2] = t220;
-    const wam7_real_t t221 = wam7_sign(dq[3]);
+    const wam7_real_t t221 = wam7_sign(dq[3]); /* joint j4: coulomb_friction */
     const wam7_real_t t222 = WAM7_C(2.1881838074398248) * (WAM7_C(18.0) * dq[3] * parameters[FV4]
         + t221 * parameters[FC4]) + WAM7_C(0.12156576707999026) * t188;
     out[3] = t222;
-    const wam7_real_t t223 = wam7_sign(dq[4]);
+    const wam7_real_t t223 = wam7_sign(dq[4]); /* joint j5: coulomb_friction */
     const wam7_real_t t224 = WAM7_C(4.237288135593221) * (WAM7_C(9.48) * dq[4] * parameters[FV5]
         + t223 * parameters[FC5]) + WAM7_C(0.4469713223199599) * t175;
     out[4] = t224;
-    const wam7_real_t t225 = wam7_sign(dq[5]);
+    const wam7_real_t t225 = wam7_sign(dq[5]); /* joint j6: coulomb_friction */
     const wam7_real_t t226 = WAM7_C(4.237288135593221) * (WAM7_C(9.48) * dq[5] * parameters[FV6]
         + t225 * parameters[FC6]) + WAM7_C(0.4469713223199599) * t154;
     out[5] = t226;
-    const wam7_real_t t227 = wam7_sign(dq[6]);
+    const wam7_real_t t227 = wam7_sign(dq[6]); /* joint j7: coulomb_friction */
     const wam7_real_t t228 = WAM7_C(14.925373134328357) * (WAM7_C(14.93) * dq[6] * parameters[FV7]
         + t227 * parameters[FC7]) + WAM7_C(0.9996900960702182) * t142;
     out[6] = t228;

@@ -8,16 +8,16 @@
  */
 #include "wam7_private.h"
 
-#if WAM7_GENERATION != 0x7A21915FUL
+#if WAM7_GENERATION != 0x0E2B7B26UL
 #error "wam7.h and wam7_check_parameters.c are of different generations: generate the arm again"
 #endif
 
-int wam7_check_parameters(const wam7_real_t parameters[WAM7_N_PARAMETERS])
+wam7_status_t wam7_check_parameters(const wam7_real_t parameters[WAM7_N_PARAMETERS])
 {
     return wam7_within(parameters, 62, WAM7_C(1.0e18)) ? WAM7_STATUS_OK : WAM7_STATUS_INPUT;
 }
 
-int wam7_check_parameters_standard(const wam7_real_t parameters[WAM7_N_STANDARD_PARAMETERS])
+wam7_status_t wam7_check_parameters_standard(const wam7_real_t parameters[WAM7_N_STANDARD_PARAMETERS])
 {
     return wam7_within(parameters, 91, WAM7_C(1.0e18)) ? WAM7_STATUS_OK : WAM7_STATUS_INPUT;
 }

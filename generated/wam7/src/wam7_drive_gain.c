@@ -8,8 +8,8 @@
  *
  * Operations: 0 (0 mul, 0 add, 0 neg).
  *
- * @param[in]   q    [7]  [rad]            joint coordinates; norm at most 10000
- * @param[out]  out  [7]  [(N m) per (A)]  drive gains K
+ * @param[in]   q    [7]  [rad]        joint coordinates; norm at most 10000
+ * @param[out]  out  [7]  [N m per A]  drive gains K
  *
  * Coordinates:
  *
@@ -23,15 +23,15 @@
  */
 #include "wam7_private.h"
 
-#if WAM7_GENERATION != 0x7A21915FUL
+#if WAM7_GENERATION != 0x0E2B7B26UL
 #error "wam7.h and wam7_drive_gain.c are of different generations: generate the arm again"
 #endif
 
-int wam7_drive_gain(
+wam7_status_t wam7_drive_gain(
     const wam7_real_t q[WAM7_N_JOINTS],
     wam7_real_t out[WAM7_N_JOINTS])
 {
-    int status = WAM7_STATUS_OK;
+    wam7_status_t status = WAM7_STATUS_OK;
 
     if (!wam7_within_joints(q, WAM7_C(1.0e8))) {
         status |= WAM7_STATUS_INPUT;

@@ -91,11 +91,11 @@
  */
 #include "wam7_private.h"
 
-#if WAM7_GENERATION != 0x7A21915FUL
+#if WAM7_GENERATION != 0x0E2B7B26UL
 #error "wam7.h and wam7_energy.c are of different generations: generate the arm again"
 #endif
 
-int wam7_energy(
+wam7_status_t wam7_energy(
     const wam7_real_t q[WAM7_N_JOINTS],
     const wam7_real_t dq[WAM7_N_JOINTS],
     const wam7_real_t parameters[WAM7_N_PARAMETERS],
@@ -106,7 +106,7 @@ int wam7_energy(
         XZ4, YZ4, ZZ4R, MX4R, MY4R, XX5R, XY5, XZ5, YZ5, ZZ5R, MX5, MY5R, XX6R, XY6, XZ6, YZ6, ZZ6R, MX6,
         MY6R, XX7R, XY7, XZ7R, YZ7R, ZZ7, MX7, MY7, FV1, FC1, FV2, FC2, FV3, FC3, IA3, FV4, FC4, IA4, FV5,
         FC5, IA5, FV6, FC6, IA6, FV7, FC7, IA7 };
-    int status = WAM7_STATUS_OK;
+    wam7_status_t status = WAM7_STATUS_OK;
 
     if (!wam7_within_joints(q, WAM7_C(1.0e8))
         || !wam7_within_joints(dq, WAM7_C(1.0e10))
@@ -131,11 +131,11 @@ int wam7_energy(
     WAM7_SINCOS(q[5], &t50, &t49);
     wam7_real_t t61, t60;
     WAM7_SINCOS(q[6], &t61, &t60);
-    const wam7_real_t t1 = t0 * dq[0];
-    const wam7_real_t t4 = t2 * t1 - t3 * dq[1];
+    const wam7_real_t t1 = t0 * dq[0]; /* link j2: motion */
+    const wam7_real_t t4 = t2 * t1 - t3 * dq[1]; /* link j3: motion */
     const wam7_real_t t5 = t3 * t1 + t2 * dq[1];
-    const wam7_real_t t7 = t6 * dq[0];
-    const wam7_real_t t8 = dq[2] + t7;
+    const wam7_real_t t7 = t6 * dq[0]; /* link j2: motion */
+    const wam7_real_t t8 = dq[2] + t7; /* link j3: motion */
     const wam7_real_t t9 = t4 * (parameters[XX3R] * t4 - parameters[XY3R] * t5 - parameters[XZ3] * t8);
     const wam7_real_t t10 = t8 * (parameters[YZ3] * t5 - parameters[XZ3] * t4 + parameters[ZZ3R] * t8);
     const wam7_real_t t11 = t9 + t5 * (parameters[YZ3] * t8 - parameters[XY3R] * t4) + t10;
@@ -145,30 +145,30 @@ int wam7_energy(
     const wam7_real_t t14 = t12 + t7 * (parameters[XY2] * t1 - parameters[YZ2] * dq[1]) + t13;
     const wam7_real_t t15 = WAM7_C(0.5) * (dq[0] * (parameters[ZZ1R] * dq[0])) + WAM7_C(0.5) * t14
         + WAM7_C(0.5) * t11;
-    const wam7_real_t t16 = WAM7_C(0.55) * dq[1];
+    const wam7_real_t t16 = WAM7_C(0.55) * dq[1]; /* link j3: velocity of its origin */
     const wam7_real_t t17 = WAM7_C(-0.55) * t1;
     const wam7_real_t t18 = t3 * t16 + t2 * t17;
     const wam7_real_t t19 = t3 * t17 - t2 * t16;
     const wam7_real_t t20 = t15 + (parameters[MY3R] * (t8 * t19) - parameters[MX3R] * (t8 * t18));
-    const wam7_real_t t23 = t21 * t4 + t22 * t8;
+    const wam7_real_t t23 = t21 * t4 + t22 * t8; /* link j4: motion */
     const wam7_real_t t24 = t22 * t4 - t21 * t8;
     const wam7_real_t t25 = dq[3] + t5;
     const wam7_real_t t26 = t23 * (parameters[XX4R] * t23 - parameters[XY4R] * t24 - parameters[XZ4] * t25);
     const wam7_real_t t27 = t25 * (parameters[YZ4] * t24 - parameters[XZ4] * t23 + parameters[ZZ4R] * t25);
     const wam7_real_t t28 = t26 + t24 * (parameters[YZ4] * t25 - parameters[XY4R] * t23) + t27;
-    const wam7_real_t t29 = WAM7_C(0.045) * t5;
+    const wam7_real_t t29 = WAM7_C(0.045) * t5; /* link j4: velocity of its origin */
     const wam7_real_t t30 = t22 * t19 + t21 * t29;
     const wam7_real_t t31 = t18 + WAM7_C(-0.045) * t8;
     const wam7_real_t t32 = t21 * t19 - t22 * t29;
     const wam7_real_t t33 = parameters[MX4R] * (t25 * t30 + t24 * t31) + parameters[MY4R] * (t23 * t31
         + t25 * t32);
-    const wam7_real_t t36 = t35 * t25 - t34 * t23;
+    const wam7_real_t t36 = t35 * t25 - t34 * t23; /* link j5: motion */
     const wam7_real_t t37 = t35 * t23 + t34 * t25;
     const wam7_real_t t38 = t24 - dq[4];
     const wam7_real_t t39 = t36 * (parameters[XZ5] * t38 - (parameters[XX5R] * t36 + parameters[XY5] * t37));
     const wam7_real_t t40 = t38 * (parameters[XZ5] * t36 + parameters[YZ5] * t37 - parameters[ZZ5R] * t38);
     const wam7_real_t t41 = t37 * (parameters[XY5] * t36 - parameters[YZ5] * t38) - t39 - t40;
-    const wam7_real_t t42 = WAM7_C(0.3) * t25 - t32;
+    const wam7_real_t t42 = WAM7_C(0.3) * t25 - t32; /* link j5: velocity of its origin */
     const wam7_real_t t43 = t31 + (WAM7_C(-0.3) * t23 + WAM7_C(-0.045) * t24);
     const wam7_real_t t44 = t35 * t42 + t34 * t43;
     const wam7_real_t t45 = t30 + WAM7_C(-0.045) * t25;
@@ -176,17 +176,17 @@ int wam7_energy(
     const wam7_real_t t47 = parameters[MX5] * (t38 * t44 + t37 * t45) - parameters[MY5R] * (t36 * t45
         + t38 * t46);
     const wam7_real_t t48 = t20 + WAM7_C(0.5) * t28 + t33 + WAM7_C(0.5) * t41 + t47;
-    const wam7_real_t t51 = t49 * t36 + t50 * t38;
+    const wam7_real_t t51 = t49 * t36 + t50 * t38; /* link j6: motion */
     const wam7_real_t t52 = t49 * t38 - t50 * t36;
     const wam7_real_t t53 = dq[5] + t37;
     const wam7_real_t t54 = t51 * (parameters[XX6R] * t51 + parameters[XY6] * t52 + parameters[XZ6] * t53);
     const wam7_real_t t55 = t53 * (parameters[XZ6] * t51 + parameters[YZ6] * t52 + parameters[ZZ6R] * t53);
     const wam7_real_t t56 = t54 + t52 * (parameters[XY6] * t51 + parameters[YZ6] * t53) + t55;
-    const wam7_real_t t57 = t50 * t46 + t49 * t45;
+    const wam7_real_t t57 = t50 * t46 + t49 * t45; /* link j6: velocity of its origin */
     const wam7_real_t t58 = t49 * t46 - t50 * t45;
     const wam7_real_t t59 = parameters[MX6] * (t53 * t57 + t52 * t44) + parameters[MY6R] * (t53 * t58
         - t51 * t44);
-    const wam7_real_t t62 = t60 * t51 + t61 * t53;
+    const wam7_real_t t62 = t60 * t51 + t61 * t53; /* link j7: motion */
     const wam7_real_t t63 = t61 * t51 - t60 * t53;
     const wam7_real_t t64 = t52 - dq[6];
     const wam7_real_t t65 = t62 * (parameters[XY7] * t63 - parameters[XX7R] * t62 + parameters[XZ7R] * t64);
@@ -201,19 +201,19 @@ int wam7_energy(
     const wam7_real_t t72 = t71 + WAM7_C(0.5) * (WAM7_C(89.8704) * parameters[IA5] * (dq[4] * dq[4]))
         + WAM7_C(0.5) * (WAM7_C(89.8704) * parameters[IA6] * (dq[5] * dq[5]));
     kinetic[0] = t72 + WAM7_C(0.5) * (WAM7_C(222.9049) * parameters[IA7] * (dq[6] * dq[6]));
-    const wam7_real_t t73 = WAM7_C(-9.81) * t0;
+    const wam7_real_t t73 = WAM7_C(-9.81) * t0; /* link j2: motion */
     const wam7_real_t t74 = WAM7_C(-9.81) * t6;
-    const wam7_real_t t75 = t2 * t73;
+    const wam7_real_t t75 = t2 * t73; /* link j3: motion */
     const wam7_real_t t76 = t3 * t73;
     const wam7_real_t t77 = parameters[MX2] * t73 + parameters[MY2R] * t74 + (parameters[MX3R] * t75
         - parameters[MY3R] * t76);
-    const wam7_real_t t78 = t21 * t75 + t22 * t74;
+    const wam7_real_t t78 = t21 * t75 + t22 * t74; /* link j4: motion */
     const wam7_real_t t79 = t21 * t74 - t22 * t75;
-    const wam7_real_t t80 = t34 * t78 - t35 * t76;
+    const wam7_real_t t80 = t34 * t78 - t35 * t76; /* link j5: motion */
     const wam7_real_t t81 = t35 * t78 + t34 * t76;
     const wam7_real_t t82 = t77 + (parameters[MX4R] * t78 + parameters[MY4R] * t79) + (parameters[MX5] * t80
         - parameters[MY5R] * t81);
-    const wam7_real_t t83 = t49 * t80 + t50 * t79;
+    const wam7_real_t t83 = t49 * t80 + t50 * t79; /* link j6: motion */
     const wam7_real_t t84 = parameters[MX6] * t83 + parameters[MY6R] * (t49 * t79 - t50 * t80);
     const wam7_real_t t85 = parameters[MX7] * (t60 * t83 - t61 * t81) - parameters[MY7] * (t61 * t83
         + t60 * t81);

@@ -120,11 +120,11 @@
  */
 #include "wam7_private.h"
 
-#if WAM7_GENERATION != 0x7A21915FUL
+#if WAM7_GENERATION != 0x0E2B7B26UL
 #error "wam7.h and wam7_energy_standard.c are of different generations: generate the arm again"
 #endif
 
-int wam7_energy_standard(
+wam7_status_t wam7_energy_standard(
     const wam7_real_t q[WAM7_N_JOINTS],
     const wam7_real_t dq[WAM7_N_JOINTS],
     const wam7_real_t parameters[WAM7_N_STANDARD_PARAMETERS],
@@ -136,7 +136,7 @@ int wam7_energy_standard(
         XX5, XY5, XZ5, YY5, YZ5, ZZ5, MX5, MY5, MZ5, M5, XX6, XY6, XZ6, YY6, YZ6, ZZ6, MX6, MY6, MZ6, M6, XX7,
         XY7, XZ7, YY7, YZ7, ZZ7, MX7, MY7, MZ7, M7, FV1, FC1, IA1, FV2, FC2, IA2, FV3, FC3, IA3, FV4, FC4,
         IA4, FV5, FC5, IA5, FV6, FC6, IA6, FV7, FC7, IA7 };
-    int status = WAM7_STATUS_OK;
+    wam7_status_t status = WAM7_STATUS_OK;
 
     if (!wam7_within_joints(q, WAM7_C(1.0e8))
         || !wam7_within_joints(dq, WAM7_C(1.0e10))
@@ -161,15 +161,15 @@ int wam7_energy_standard(
     WAM7_SINCOS(q[5], &t56, &t55);
     wam7_real_t t72, t70;
     WAM7_SINCOS(q[6], &t72, &t70);
-    const wam7_real_t t1 = t0 * dq[0];
-    const wam7_real_t t4 = t2 * t1 - t3 * dq[1];
+    const wam7_real_t t1 = t0 * dq[0]; /* link j2: motion */
+    const wam7_real_t t4 = t2 * t1 - t3 * dq[1]; /* link j3: motion */
     const wam7_real_t t5 = t3 * t1 + t2 * dq[1];
-    const wam7_real_t t7 = t6 * dq[0];
-    const wam7_real_t t8 = dq[2] + t7;
+    const wam7_real_t t7 = t6 * dq[0]; /* link j2: motion */
+    const wam7_real_t t8 = dq[2] + t7; /* link j3: motion */
     const wam7_real_t t9 = t4 * (t4 * parameters[XX3] - t5 * parameters[XY3] - t8 * parameters[XZ3]);
     const wam7_real_t t10 = t5 * (t5 * parameters[YY3] - t4 * parameters[XY3] + t8 * parameters[YZ3]);
     const wam7_real_t t11 = t8 * (t5 * parameters[YZ3] - t4 * parameters[XZ3] + t8 * parameters[ZZ3]);
-    const wam7_real_t t12 = WAM7_C(0.55) * dq[1];
+    const wam7_real_t t12 = WAM7_C(0.55) * dq[1]; /* link j3: velocity of its origin */
     const wam7_real_t t13 = WAM7_C(0.55) * t1;
     const wam7_real_t t14 = t2 * t12 + t3 * t13;
     const wam7_real_t t15 = t3 * t12 - t2 * t13;
@@ -181,12 +181,12 @@ int wam7_energy_standard(
         + t19);
     const wam7_real_t t21 = parameters[MZ3] * (t5 * t14 - t4 * t15) - (parameters[MX3] * (t8 * t15)
         + parameters[MY3] * (t8 * t14));
-    const wam7_real_t t23 = WAM7_C(0.045) * t5;
+    const wam7_real_t t23 = WAM7_C(0.045) * t5; /* link j4: velocity of its origin */
     const wam7_real_t t25 = t22 * t14 + t24 * t23;
     const wam7_real_t t26 = t22 * t23 - t24 * t14;
     const wam7_real_t t27 = t15 + WAM7_C(-0.045) * t8;
     const wam7_real_t t28 = parameters[M4] * (t25 * t25 + t26 * t26 + t27 * t27);
-    const wam7_real_t t29 = t22 * t4 + t24 * t8;
+    const wam7_real_t t29 = t22 * t4 + t24 * t8; /* link j4: motion */
     const wam7_real_t t30 = t24 * t4 - t22 * t8;
     const wam7_real_t t31 = dq[3] + t5;
     const wam7_real_t t32 = t29 * (t29 * parameters[XX4] - t30 * parameters[XY4] - t31 * parameters[XZ4]);
@@ -196,13 +196,13 @@ int wam7_energy_standard(
     const wam7_real_t t36 = parameters[MX4] * (t31 * t26 + t30 * t27) + parameters[MY4] * (t29 * t27
         - t31 * t25);
     const wam7_real_t t37 = t35 + (t36 + parameters[MZ4] * (t30 * t25 + t29 * t26));
-    const wam7_real_t t38 = t25 + WAM7_C(0.3) * t31;
+    const wam7_real_t t38 = t25 + WAM7_C(0.3) * t31; /* link j5: velocity of its origin */
     const wam7_real_t t40 = WAM7_C(0.3) * t29 + WAM7_C(0.045) * t30 - t27;
     const wam7_real_t t42 = t39 * t38 + t41 * t40;
     const wam7_real_t t43 = t41 * t38 - t39 * t40;
     const wam7_real_t t44 = t43 * t43;
     const wam7_real_t t45 = t26 + WAM7_C(-0.045) * t31;
-    const wam7_real_t t46 = t41 * t31 - t39 * t29;
+    const wam7_real_t t46 = t41 * t31 - t39 * t29; /* link j5: motion */
     const wam7_real_t t47 = t41 * t29 + t39 * t31;
     const wam7_real_t t48 = t30 - dq[4];
     const wam7_real_t t49 = t46 * (t48 * parameters[XZ5] - (t46 * parameters[XX5] + t47 * parameters[XY5]));
@@ -212,10 +212,10 @@ int wam7_energy_standard(
     const wam7_real_t t53 = parameters[MX5] * (t48 * t43 + t47 * t45) + parameters[MY5] * (t48 * t42
         - t46 * t45);
     const wam7_real_t t54 = t37 + WAM7_C(0.5) * t52 + (t53 + parameters[MZ5] * (t47 * t42 + t46 * t43));
-    const wam7_real_t t57 = t55 * t42 + t56 * t45;
+    const wam7_real_t t57 = t55 * t42 + t56 * t45; /* link j6: velocity of its origin */
     const wam7_real_t t58 = t55 * t45 - t56 * t42;
     const wam7_real_t t59 = t58 * t58;
-    const wam7_real_t t60 = t55 * t46 + t56 * t48;
+    const wam7_real_t t60 = t55 * t46 + t56 * t48; /* link j6: motion */
     const wam7_real_t t61 = t55 * t48 - t56 * t46;
     const wam7_real_t t62 = dq[5] + t47;
     const wam7_real_t t63 = t60 * (t60 * parameters[XX6] + t61 * parameters[XY6] + t62 * parameters[XZ6]);
@@ -225,11 +225,11 @@ int wam7_energy_standard(
     const wam7_real_t t67 = parameters[MX6] * (t62 * t58 + t61 * t43) - parameters[MY6] * (t60 * t43
         + t62 * t57);
     const wam7_real_t t68 = t54 + WAM7_C(0.5) * t66 + (t67 + parameters[MZ6] * (t61 * t57 - t60 * t58));
-    const wam7_real_t t69 = t57 + WAM7_C(0.06) * t62;
+    const wam7_real_t t69 = t57 + WAM7_C(0.06) * t62; /* link j7: velocity of its origin */
     const wam7_real_t t71 = WAM7_C(-0.06) * t60 - t43;
     const wam7_real_t t73 = t70 * t69 + t72 * t71;
     const wam7_real_t t74 = t72 * t69 - t70 * t71;
-    const wam7_real_t t75 = t70 * t60 + t72 * t62;
+    const wam7_real_t t75 = t70 * t60 + t72 * t62; /* link j7: motion */
     const wam7_real_t t76 = t70 * t62 - t72 * t60;
     const wam7_real_t t77 = t61 - dq[6];
     const wam7_real_t t78 = t75 * (t77 * parameters[XZ7] - (t75 * parameters[XX7] + t76 * parameters[XY7]));
@@ -246,26 +246,26 @@ int wam7_energy_standard(
     const wam7_real_t t86 = t85 + WAM7_C(0.5) * (dq[4] * dq[4] * (WAM7_C(89.8704) * parameters[IA5]))
         + WAM7_C(0.5) * (dq[5] * dq[5] * (WAM7_C(89.8704) * parameters[IA6]));
     kinetic[0] = t86 + WAM7_C(0.5) * (dq[6] * dq[6] * (WAM7_C(222.9049) * parameters[IA7]));
-    const wam7_real_t t87 = WAM7_C(-9.81) * t0;
+    const wam7_real_t t87 = WAM7_C(-9.81) * t0; /* link j2: motion */
     const wam7_real_t t88 = WAM7_C(9.81) * t6;
-    const wam7_real_t t89 = t2 * t87;
+    const wam7_real_t t89 = t2 * t87; /* link j3: motion */
     const wam7_real_t t90 = t3 * t87;
     const wam7_real_t t91 = WAM7_C(5.395500000000001) * t6;
     const wam7_real_t t92 = t89 * parameters[MX3] - t90 * parameters[MY3] + t88 * parameters[MZ3]
         + parameters[M3] * t91;
     const wam7_real_t t93 = WAM7_C(9.81) * parameters[MZ1] + (t87 * parameters[MX2] - t88 * parameters[MY2])
         + t92;
-    const wam7_real_t t94 = t24 * t88 - t22 * t89;
+    const wam7_real_t t94 = t24 * t88 - t22 * t89; /* link j4: motion */
     const wam7_real_t t95 = t24 * t89 + t22 * t88;
     const wam7_real_t t96 = t91 + WAM7_C(0.045) * t89;
     const wam7_real_t t97 = parameters[M4] * t96 - (t94 * parameters[MX4] + t95 * parameters[MY4]
         + t90 * parameters[MZ4]);
-    const wam7_real_t t98 = t39 * t94 + t41 * t90;
+    const wam7_real_t t98 = t39 * t94 + t41 * t90; /* link j5: motion */
     const wam7_real_t t99 = t41 * t94 - t39 * t90;
     const wam7_real_t t100 = t96 + (WAM7_C(0.045) * t94 + WAM7_C(0.3) * t95);
     const wam7_real_t t101 = t99 * parameters[MY5] - t98 * parameters[MX5] + t95 * parameters[MZ5]
         + parameters[M5] * t100;
-    const wam7_real_t t102 = t55 * t98 + t56 * t95;
+    const wam7_real_t t102 = t55 * t98 + t56 * t95; /* link j6: motion */
     const wam7_real_t t103 = t55 * t95 - t56 * t98;
     const wam7_real_t t104 = t99 * parameters[MZ6] - (t102 * parameters[MX6] + t103 * parameters[MY6])
         + parameters[M6] * t100;

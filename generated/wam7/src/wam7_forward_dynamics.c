@@ -6,7 +6,7 @@
  * Arm wam7, description 552353c9ea1f05cf.
  * SPDX-License-Identifier: 0BSD
  *
- * Operations: 1205 (652 mul, 553 add, 0 neg), 7 div, 12 trig, 7 other.
+ * Operations: 1205 (652 mul, 553 add, 0 neg), 7 div, 12 trig, 7 other calls (sign, select and the like).
  *
  * @param[in]   q           [7]   [rad]      joint coordinates; norm at most 10000
  * @param[in]   dq          [7]   [rad/s]    joint velocities; norm at most 100000
@@ -92,11 +92,11 @@
  */
 #include "wam7_private.h"
 
-#if WAM7_GENERATION != 0x7A21915FUL
+#if WAM7_GENERATION != 0x0E2B7B26UL
 #error "wam7.h and wam7_forward_dynamics.c are of different generations: generate the arm again"
 #endif
 
-int wam7_forward_dynamics(
+wam7_status_t wam7_forward_dynamics(
     const wam7_real_t q[WAM7_N_JOINTS],
     const wam7_real_t dq[WAM7_N_JOINTS],
     const wam7_real_t input[WAM7_N_JOINTS],
@@ -107,7 +107,7 @@ int wam7_forward_dynamics(
         XZ4, YZ4, ZZ4R, MX4R, MY4R, XX5R, XY5, XZ5, YZ5, ZZ5R, MX5, MY5R, XX6R, XY6, XZ6, YZ6, ZZ6R, MX6,
         MY6R, XX7R, XY7, XZ7R, YZ7R, ZZ7, MX7, MY7, FV1, FC1, FV2, FC2, FV3, FC3, IA3, FV4, FC4, IA4, FV5,
         FC5, IA5, FV6, FC6, IA6, FV7, FC7, IA7 };
-    int status = WAM7_STATUS_OK;
+    wam7_status_t status = WAM7_STATUS_OK;
 
     if (!wam7_within_joints(q, WAM7_C(1.0e8))
         || !wam7_within_joints(dq, WAM7_C(1.0e10))
@@ -137,9 +137,11 @@ int wam7_forward_dynamics(
         wam7_zero(out, 7);
         return WAM7_STATUS_PIVOT;
     }
+    /* link j7: column of the mass matrix */
     const wam7_real_t t3 = t1 * parameters[XZ7R] + t2 * parameters[YZ7R];
     const wam7_real_t t4 = WAM7_C(-1.0) / t0;
     const wam7_real_t t5 = t3 * t4;
+    /* link j7: inertia of it and all beyond */
     const wam7_real_t t6 = parameters[XY7] * (WAM7_C(2.0) * t1) - t2 * parameters[XX7R];
     const wam7_real_t t7 = t2 * t6;
     const wam7_real_t t8 = parameters[ZZ6R] + (parameters[XX7R] + t7);
@@ -156,14 +158,16 @@ int wam7_forward_dynamics(
     }
     const wam7_real_t t12 = t1 * t6 - parameters[XY7] - parameters[XZ6];
     const wam7_real_t t14 = parameters[YZ6] - t3;
-    const wam7_real_t t16 = t15 * t14 - t13 * t12;
+    const wam7_real_t t16 = t15 * t14 - t13 * t12; /* link j6: column of the mass matrix */
+    /* link j7: column of the mass matrix */
     const wam7_real_t t17 = t1 * parameters[YZ7R] - t2 * parameters[XZ7R];
     const wam7_real_t t18 = t13 * t17 + t15 * parameters[ZZ7];
     const wam7_real_t t19 = t18 * t5 - t16;
     const wam7_real_t t20 = WAM7_C(-1.0) / t10;
     const wam7_real_t t21 = t19 * t20;
-    const wam7_real_t t22 = parameters[XX6R] - t7;
+    const wam7_real_t t22 = parameters[XX6R] - t7; /* link j7: inertia of it and all beyond */
     const wam7_real_t t23 = parameters[XY6] + t17;
+    /* link j6: inertia of it and all beyond */
     const wam7_real_t t24 = t15 * (t22 - parameters[ZZ7]) + t23 * (WAM7_C(-2.0) * t13);
     const wam7_real_t t25 = t15 * t24;
     const wam7_real_t t26 = parameters[ZZ5R] + (t22 - t25);
@@ -181,20 +185,22 @@ int wam7_forward_dynamics(
     }
     const wam7_real_t t31 = t23 + t13 * t24 - parameters[XZ5];
     const wam7_real_t t33 = parameters[YZ5] - t16;
+    /* link j7: column of the mass matrix */
     const wam7_real_t t35 = t2 * parameters[MY7] + t1 * parameters[MX7];
-    const wam7_real_t t36 = parameters[MY5R] + t35;
+    const wam7_real_t t36 = parameters[MY5R] + t35; /* link j6: inertia of it and all beyond */
+    /* link j7: column of the mass matrix */
     const wam7_real_t t37 = t2 * parameters[MX7] - t1 * parameters[MY7];
-    const wam7_real_t t38 = parameters[MX6] + t37;
-    const wam7_real_t t39 = t15 * t38 - t13 * parameters[MY6R];
-    const wam7_real_t t40 = parameters[MX5] + t39;
-    const wam7_real_t t41 = t34 * t36 + t32 * t40;
+    const wam7_real_t t38 = parameters[MX6] + t37; /* link j7: inertia of it and all beyond */
+    const wam7_real_t t39 = t15 * t38 - t13 * parameters[MY6R]; /* link j6: column of the mass matrix */
+    const wam7_real_t t40 = parameters[MX5] + t39; /* link j6: inertia of it and all beyond */
+    const wam7_real_t t41 = t34 * t36 + t32 * t40; /* link j5: column of the mass matrix */
     const wam7_real_t t42 = t32 * t31 - t34 * t33 + WAM7_C(0.3) * t41;
-    const wam7_real_t t43 = t15 * t17 - t13 * parameters[ZZ7];
+    const wam7_real_t t43 = t15 * t17 - t13 * parameters[ZZ7]; /* link j7: column of the mass matrix */
     const wam7_real_t t44 = t15 * t35;
     const wam7_real_t t45 = t34 * t44 + t32 * t37;
     const wam7_real_t t46 = t13 * t35;
     const wam7_real_t t47 = t32 * t43 - t34 * t3 + (WAM7_C(-0.045) * t46 + WAM7_C(0.3) * t45);
-    const wam7_real_t t48 = t15 * t12 + t13 * t14;
+    const wam7_real_t t48 = t15 * t12 + t13 * t14; /* link j6: column of the mass matrix */
     const wam7_real_t t49 = t15 * parameters[MY6R] + t13 * t38;
     const wam7_real_t t50 = t34 * t49;
     const wam7_real_t t51 = t32 * t48 - t34 * t8 + (WAM7_C(0.045) * t39 + WAM7_C(0.3) * t50);
@@ -204,12 +210,14 @@ int wam7_forward_dynamics(
     const wam7_real_t t55 = t53 * t54;
     const wam7_real_t t56 = t52 * t20;
     const wam7_real_t t57 = t47 * t4;
+    /* link j6: inertia of it and all beyond */
     const wam7_real_t t58 = parameters[XX5R] + (parameters[ZZ7] + t25);
     const wam7_real_t t59 = parameters[XY5] - t48;
+    /* link j5: inertia of it and all beyond */
     const wam7_real_t t60 = t34 * (t8 - t58) + t59 * (WAM7_C(2.0) * t32);
     const wam7_real_t t61 = t34 * t60;
-    const wam7_real_t t62 = t34 * t40 - t32 * t36;
-    const wam7_real_t t63 = WAM7_C(-0.09) * t62;
+    const wam7_real_t t62 = t34 * t40 - t32 * t36; /* link j5: column of the mass matrix */
+    const wam7_real_t t63 = WAM7_C(-0.09) * t62; /* link j5: inertia of it and all beyond */
     const wam7_real_t t64 = WAM7_C(-0.6) * t49;
     const wam7_real_t t65 = parameters[ZZ4R] + (t58 + t61 + (t63 + t64));
     const wam7_real_t t66 = t65 + WAM7_C(324.0) * parameters[IA4];
@@ -226,19 +234,19 @@ int wam7_forward_dynamics(
     const wam7_real_t t69 = WAM7_C(-0.045) * t41;
     const wam7_real_t t70 = parameters[XZ4] + (t59 - t32 * t60 - t69);
     const wam7_real_t t72 = parameters[YZ4] + t42;
-    const wam7_real_t t74 = t71 * t70 + t73 * t72;
-    const wam7_real_t t75 = t34 * t37 - t32 * t44;
+    const wam7_real_t t74 = t71 * t70 + t73 * t72; /* link j4: column of the mass matrix */
+    const wam7_real_t t75 = t34 * t37 - t32 * t44; /* link j7: column of the mass matrix */
     const wam7_real_t t76 = t34 * t43 + t32 * t3 + WAM7_C(0.3) * t75;
     const wam7_real_t t77 = WAM7_C(0.045) * t75;
     const wam7_real_t t78 = t77 - t18;
     const wam7_real_t t79 = t73 * t78 - t71 * t76 - t77;
-    const wam7_real_t t80 = t32 * t49;
+    const wam7_real_t t80 = t32 * t49; /* link j6: column of the mass matrix */
     const wam7_real_t t81 = t34 * t48 + t32 * t8 + WAM7_C(-0.3) * t80;
     const wam7_real_t t82 = WAM7_C(-0.045) * t80;
     const wam7_real_t t83 = t16 + t82;
     const wam7_real_t t84 = t73 * t83 - t71 * t81 - t82;
     const wam7_real_t t85 = t84 + t79 * t5;
-    const wam7_real_t t86 = t34 * t31 + t32 * t33;
+    const wam7_real_t t86 = t34 * t31 + t32 * t33; /* link j5: column of the mass matrix */
     const wam7_real_t t87 = WAM7_C(0.3) * t62;
     const wam7_real_t t88 = t86 + t87;
     const wam7_real_t t89 = WAM7_C(0.045) * t62;
@@ -248,15 +256,16 @@ int wam7_forward_dynamics(
     const wam7_real_t t93 = t79 * t57 - t74 + t85 * t56 - t92 * t55;
     const wam7_real_t t94 = WAM7_C(1.0) / t67;
     const wam7_real_t t95 = t93 * t94;
-    const wam7_real_t t96 = t26 + t63;
+    const wam7_real_t t96 = t26 + t63; /* link j5: inertia of it and all beyond */
     const wam7_real_t t97 = parameters[XX4R] + (t8 - t61 + t64);
     const wam7_real_t t98 = parameters[XY4R] + (t86 + (t87 + WAM7_C(0.045) * t49));
+    /* link j4: inertia of it and all beyond */
     const wam7_real_t t99 = t73 * (t96 - t97) + t98 * (WAM7_C(2.0) * t71);
     const wam7_real_t t100 = t73 * t99;
-    const wam7_real_t t101 = parameters[MX4R] + t62;
+    const wam7_real_t t101 = parameters[MX4R] + t62; /* link j5: inertia of it and all beyond */
     const wam7_real_t t102 = parameters[MY4R] + t49;
-    const wam7_real_t t103 = t73 * t101 - t71 * t102;
-    const wam7_real_t t104 = WAM7_C(0.09) * t103;
+    const wam7_real_t t103 = t73 * t101 - t71 * t102; /* link j4: column of the mass matrix */
+    const wam7_real_t t104 = WAM7_C(0.09) * t103; /* link j4: inertia of it and all beyond */
     const wam7_real_t t105 = parameters[ZZ3R] + (t97 + t100 + t104);
     const wam7_real_t t106 = t105 + WAM7_C(798.0625) * parameters[IA3];
     const wam7_real_t t107 = t79 * t4;
@@ -275,39 +284,42 @@ int wam7_forward_dynamics(
     }
     const wam7_real_t t113 = parameters[XX3R] + (t96 - t100);
     const wam7_real_t t114 = t65 + t104;
-    const wam7_real_t t116 = t73 * t70 - t71 * t72;
-    const wam7_real_t t117 = parameters[XY3R] + (t69 + t116);
+    const wam7_real_t t116 = t73 * t70 - t71 * t72; /* link j4: column of the mass matrix */
+    const wam7_real_t t117 = parameters[XY3R] + (t69 + t116); /* link j4: inertia of it and all beyond */
+    /* link j3: inertia of it and all beyond */
     const wam7_real_t t119 = t115 * (t114 - t113) + t117 * (WAM7_C(2.0) * t118);
     const wam7_real_t t120 = t115 * t119;
-    const wam7_real_t t121 = t73 * t102 + t71 * t101;
-    const wam7_real_t t122 = WAM7_C(-1.1) * t121;
+    const wam7_real_t t121 = t73 * t102 + t71 * t101; /* link j4: column of the mass matrix */
+    const wam7_real_t t122 = WAM7_C(-1.1) * t121; /* link j3: inertia of it and all beyond */
     const wam7_real_t t123 = parameters[ZZ2R] + (t113 + t120 + t122);
-    const wam7_real_t t124 = t73 * t76 + t71 * t78;
+    const wam7_real_t t124 = t73 * t76 + t71 * t78; /* link j7: column of the mass matrix */
     const wam7_real_t t125 = t47 + WAM7_C(0.045) * (t71 * t45 + t73 * t46);
     const wam7_real_t t126 = t73 * t45 - t71 * t46;
     const wam7_real_t t127 = t118 * t124 + t115 * t125 + WAM7_C(0.55) * (t115 * t126 + t118 * t75);
     const wam7_real_t t128 = t127 * t4;
-    const wam7_real_t t129 = t73 * t81 + t71 * t83;
+    const wam7_real_t t129 = t73 * t81 + t71 * t83; /* link j6: column of the mass matrix */
     const wam7_real_t t130 = t51 + WAM7_C(0.045) * (t71 * t50 - t73 * t39);
     const wam7_real_t t131 = t73 * t50 + t71 * t39;
     const wam7_real_t t132 = t118 * t129 + t115 * t130 + WAM7_C(0.55) * (t115 * t131 - t118 * t80);
     const wam7_real_t t133 = t132 + t127 * t5;
     const wam7_real_t t134 = t133 * t20;
-    const wam7_real_t t135 = t73 * t88 + t71 * t90;
+    const wam7_real_t t135 = t73 * t88 + t71 * t90; /* link j5: column of the mass matrix */
     const wam7_real_t t136 = t42 + WAM7_C(0.045) * (t71 * t41);
     const wam7_real_t t137 = t73 * t41;
     const wam7_real_t t138 = t118 * t135 + t115 * t136 + WAM7_C(0.55) * (t115 * t137 + t118 * t62);
     const wam7_real_t t139 = t138 + t127 * t28 + t133 * t21;
     const wam7_real_t t140 = t139 * t54;
     const wam7_real_t t141 = t123 + t127 * t128 + t133 * t134 - t139 * t140;
-    const wam7_real_t t142 = WAM7_C(-0.045) * t103 - t65;
+    const wam7_real_t t142 = WAM7_C(-0.045) * t103 - t65; /* link j4: column of the mass matrix */
     const wam7_real_t t143 = t115 * t142 - t118 * t116 + WAM7_C(0.55) * (t115 * t121);
     const wam7_real_t t144 = t143 - t127 * t57 - t133 * t56 + t139 * t55;
     const wam7_real_t t145 = t144 * t94;
+    /* link j4: inertia of it and all beyond */
     const wam7_real_t t146 = t98 - t71 * t99 + WAM7_C(-0.045) * t121 - parameters[XZ3];
     const wam7_real_t t147 = parameters[YZ3] - t74;
     const wam7_real_t t148 = parameters[MY3R] + t41;
     const wam7_real_t t149 = parameters[MX3R] + t103;
+    /* link j3: column of the mass matrix */
     const wam7_real_t t150 = t118 * t146 - t115 * t147 + WAM7_C(0.55) * (t115 * t148 + t118 * t149);
     const wam7_real_t t151 = t150 - t127 * t107 - t133 * t108 + t139 * t109;
     const wam7_real_t t152 = t151 - t144 * t95;
@@ -323,25 +335,33 @@ int wam7_forward_dynamics(
         wam7_zero(out, 7);
         return WAM7_STATUS_PIVOT;
     }
+    /* link j2: column of the mass matrix */
     const wam7_real_t t159 = t157 * (parameters[XZ2] + (t117 - t118 * t119)) + t158 * (parameters[YZ2]
         + t150);
+    /* link j7: column of the mass matrix */
     const wam7_real_t t160 = t118 * t125 - t115 * t124 + WAM7_C(0.55) * (t118 * t126 - t115 * t75);
     const wam7_real_t t161 = t157 * t160 + t158 * t79;
+    /* link j6: column of the mass matrix */
     const wam7_real_t t162 = t118 * t130 - t115 * t129 + WAM7_C(0.55) * (t118 * t131 + t115 * t80);
     const wam7_real_t t163 = t157 * t162 + t158 * t84 + t161 * t5;
+    /* link j5: column of the mass matrix */
     const wam7_real_t t164 = t118 * t136 - t115 * t135 + WAM7_C(0.55) * (t118 * t137 - t115 * t62);
     const wam7_real_t t165 = t157 * t164 + t158 * t91 + t161 * t28 + t163 * t21;
     const wam7_real_t t166 = t159 - t161 * t128 - t163 * t134 + t165 * t140;
+    /* link j4: column of the mass matrix */
     const wam7_real_t t167 = t115 * t116 + t118 * t142 + WAM7_C(0.55) * (t118 * t121);
     const wam7_real_t t168 = t157 * t167 + t158 * t74 - t161 * t57 - t163 * t56;
     const wam7_real_t t169 = t168 + t165 * t55;
+    /* link j3: column of the mass matrix */
     const wam7_real_t t170 = t115 * t146 + t118 * t147 + WAM7_C(0.55) * (t115 * t149 - t118 * t148);
     const wam7_real_t t171 = t157 * t170 + t158 * t105 + t161 * t107 + t163 * t108;
     const wam7_real_t t172 = t165 * t109 - t171 - t169 * t95;
     const wam7_real_t t173 = t166 + t169 * t145 + t172 * t154;
     const wam7_real_t t174 = WAM7_C(1.0) / t155;
     const wam7_real_t t175 = t173 * t174;
+    /* link j3: inertia of it and all beyond */
     const wam7_real_t t176 = parameters[XX2R] + (t114 - t120 + t122);
+    /* link j2: inertia of it and all beyond */
     const wam7_real_t t177 = t158 * (t105 - t176) + (parameters[XY2] + t170) * (WAM7_C(2.0) * t157);
     const wam7_real_t t178 = parameters[ZZ1R] + (t176 + t158 * t177);
     const wam7_real_t t179 = t161 * t4;
@@ -360,57 +380,57 @@ int wam7_forward_dynamics(
         wam7_zero(out, 7);
         return WAM7_STATUS_PIVOT;
     }
-    const wam7_real_t t187 = t157 * dq[0];
-    const wam7_real_t t188 = t115 * t187 - t118 * dq[1];
+    const wam7_real_t t187 = t157 * dq[0]; /* link j2: motion */
+    const wam7_real_t t188 = t115 * t187 - t118 * dq[1]; /* link j3: motion */
     const wam7_real_t t189 = t118 * t187 + t115 * dq[1];
     const wam7_real_t t190 = t188 * t189;
-    const wam7_real_t t191 = dq[1] * t187;
-    const wam7_real_t t192 = t191 - t190;
-    const wam7_real_t t193 = t158 * dq[0];
+    const wam7_real_t t191 = dq[1] * t187; /* link j2: motion */
+    const wam7_real_t t192 = t191 - t190; /* link j4: motion */
+    const wam7_real_t t193 = t158 * dq[0]; /* link j2: motion */
     const wam7_real_t t194 = t187 * t193;
     const wam7_real_t t195 = dq[1] * t193;
     const wam7_real_t t196 = WAM7_C(2.0) * t195;
-    const wam7_real_t t197 = t118 * t194 + t115 * t196;
+    const wam7_real_t t197 = t118 * t194 + t115 * t196; /* link j3: motion */
     const wam7_real_t t198 = dq[2] + t193;
     const wam7_real_t t199 = t189 * t198;
     const wam7_real_t t200 = t197 - t199;
-    const wam7_real_t t201 = t200 - t199;
+    const wam7_real_t t201 = t200 - t199; /* link j4: motion */
     const wam7_real_t t202 = t73 * t192 + t71 * t201;
     const wam7_real_t t203 = t73 * t188 + t71 * t198;
     const wam7_real_t t204 = dq[3] + t189;
     const wam7_real_t t205 = t203 * t204;
     const wam7_real_t t206 = t202 + t205;
-    const wam7_real_t t207 = t34 * t203 - t32 * t204;
+    const wam7_real_t t207 = t34 * t203 - t32 * t204; /* link j5: motion */
     const wam7_real_t t208 = t32 * t203 + t34 * t204;
     const wam7_real_t t209 = t207 * t208;
-    const wam7_real_t t210 = t206 - t209;
-    const wam7_real_t t211 = t118 * t196 - t115 * t194;
+    const wam7_real_t t210 = t206 - t209; /* link j6: motion */
+    const wam7_real_t t211 = t118 * t196 - t115 * t194; /* link j3: motion */
     const wam7_real_t t212 = t188 * t198;
     const wam7_real_t t213 = t211 + t212;
-    const wam7_real_t t214 = t71 * t188 - t73 * t198;
+    const wam7_real_t t214 = t71 * t188 - t73 * t198; /* link j4: motion */
     const wam7_real_t t215 = t203 * t214;
-    const wam7_real_t t216 = t213 + t215;
-    const wam7_real_t t217 = t73 * t201 - t71 * t192;
+    const wam7_real_t t216 = t213 + t215; /* link j5: motion */
+    const wam7_real_t t217 = t73 * t201 - t71 * t192; /* link j4: motion */
     const wam7_real_t t218 = t214 * t204;
     const wam7_real_t t219 = t217 - t218;
-    const wam7_real_t t220 = t219 - t218;
+    const wam7_real_t t220 = t219 - t218; /* link j5: motion */
     const wam7_real_t t221 = t34 * t220 - t32 * t216;
     const wam7_real_t t222 = t214 - dq[4];
     const wam7_real_t t223 = t208 * t222;
     const wam7_real_t t224 = t221 + t223;
-    const wam7_real_t t225 = t223 + t224;
+    const wam7_real_t t225 = t223 + t224; /* link j6: motion */
     const wam7_real_t t226 = t15 * t225 - t13 * t210;
     const wam7_real_t t227 = t13 * t207 + t15 * t222;
     const wam7_real_t t228 = dq[5] + t208;
     const wam7_real_t t229 = t227 * t228;
     const wam7_real_t t230 = t226 - t229;
-    const wam7_real_t t231 = t230 - t229;
-    const wam7_real_t t232 = t34 * t216 + t32 * t220;
+    const wam7_real_t t231 = t230 - t229; /* link j7: motion */
+    const wam7_real_t t232 = t34 * t216 + t32 * t220; /* link j5: motion */
     const wam7_real_t t233 = t207 * t222;
     const wam7_real_t t234 = t232 - t233;
-    const wam7_real_t t235 = t13 * t222 - t15 * t207;
+    const wam7_real_t t235 = t13 * t222 - t15 * t207; /* link j6: motion */
     const wam7_real_t t236 = t235 * t227;
-    const wam7_real_t t237 = t234 - t236;
+    const wam7_real_t t237 = t234 - t236; /* link j7: motion */
     const wam7_real_t t238 = t2 * t231 - t1 * t237;
     const wam7_real_t t239 = t2 * t228 - t1 * t235;
     const wam7_real_t t240 = t227 - dq[6];
@@ -419,180 +439,220 @@ int wam7_forward_dynamics(
     const wam7_real_t t243 = t2 * t237 + t1 * t231;
     const wam7_real_t t244 = t2 * t235 + t1 * t228;
     const wam7_real_t t245 = t244 * t240;
-    const wam7_real_t t246 = t245 + (t243 + t245);
-    const wam7_real_t t247 = t15 * t210 + t13 * t225;
+    const wam7_real_t t246 = t245 + (t243 + t245); /* link j7: force and moment */
+    const wam7_real_t t247 = t15 * t210 + t13 * t225; /* link j6: motion */
     const wam7_real_t t248 = t235 * t228;
     const wam7_real_t t249 = t247 - t248;
-    const wam7_real_t t250 = t244 * t239;
-    const wam7_real_t t251 = t249 - t250;
+    const wam7_real_t t250 = t244 * t239; /* link j7: motion */
+    const wam7_real_t t251 = t249 - t250; /* link j7: force and moment */
     const wam7_real_t t252 = parameters[XX7R] * t242 + parameters[ZZ7] * t241 - parameters[XY7] * t246
         + parameters[XZ7R] * t251;
-    const wam7_real_t t253 = t239 * t239;
+    const wam7_real_t t253 = t239 * t239; /* link j7: motion */
     const wam7_real_t t254 = t240 * t240;
-    const wam7_real_t t255 = t214 * t214;
+    const wam7_real_t t255 = t214 * t214; /* link j4: motion */
     const wam7_real_t t256 = t204 * t204;
-    const wam7_real_t t257 = t255 + t256;
-    const wam7_real_t t258 = t189 * t189;
+    const wam7_real_t t257 = t255 + t256; /* link j5: motion */
+    const wam7_real_t t258 = t189 * t189; /* link j3: motion */
     const wam7_real_t t259 = t198 * t198;
-    const wam7_real_t t260 = t258 + t259;
-    const wam7_real_t t261 = WAM7_C(-9.81) * t157;
-    const wam7_real_t t262 = t261 + WAM7_C(-0.55) * t194;
+    const wam7_real_t t260 = t258 + t259; /* link j4: motion */
+    const wam7_real_t t261 = WAM7_C(-9.81) * t157; /* link j2: motion */
+    const wam7_real_t t262 = t261 + WAM7_C(-0.55) * t194; /* link j3: motion */
     const wam7_real_t t263 = WAM7_C(1.1) * t195;
     const wam7_real_t t264 = t115 * t262 + t118 * t263;
-    const wam7_real_t t265 = t264 + WAM7_C(-0.045) * t260;
+    const wam7_real_t t265 = t264 + WAM7_C(-0.045) * t260; /* link j4: motion */
     const wam7_real_t t266 = t212 + t213;
-    const wam7_real_t t267 = t187 * t187;
+    const wam7_real_t t267 = t187 * t187; /* link j2: motion */
     const wam7_real_t t268 = dq[1] * dq[1];
     const wam7_real_t t269 = WAM7_C(9.81) * t158;
-    const wam7_real_t t270 = t269 + WAM7_C(-0.55) * (t268 + t267);
-    const wam7_real_t t271 = t270 - WAM7_C(0.045) * t266;
+    const wam7_real_t t270 = t269 + WAM7_C(-0.55) * (t268 + t267); /* link j3: motion */
+    const wam7_real_t t271 = t270 - WAM7_C(0.045) * t266; /* link j4: motion */
     const wam7_real_t t272 = t73 * t265 - t71 * t271;
-    const wam7_real_t t273 = t272 + (WAM7_C(0.045) * t257 + WAM7_C(0.3) * t216);
+    const wam7_real_t t273 = t272 + (WAM7_C(0.045) * t257 + WAM7_C(0.3) * t216); /* link j5: motion */
     const wam7_real_t t274 = t205 + t206;
-    const wam7_real_t t275 = t191 + t190;
-    const wam7_real_t t276 = t118 * t262 - t115 * t263;
-    const wam7_real_t t277 = t276 + WAM7_C(0.045) * t275;
-    const wam7_real_t t278 = WAM7_C(0.045) * t274 - WAM7_C(-0.3) * t220 - t277;
+    const wam7_real_t t275 = t191 + t190; /* link j4: motion */
+    const wam7_real_t t276 = t118 * t262 - t115 * t263; /* link j3: motion */
+    const wam7_real_t t277 = t276 + WAM7_C(0.045) * t275; /* link j4: motion */
+    const wam7_real_t t278 = WAM7_C(0.045) * t274 - WAM7_C(-0.3) * t220 - t277; /* link j5: motion */
     const wam7_real_t t279 = t34 * t273 + t32 * t278;
     const wam7_real_t t280 = t213 - t215;
-    const wam7_real_t t281 = t203 * t203;
-    const wam7_real_t t282 = t281 + t256;
-    const wam7_real_t t283 = t71 * t265 + t73 * t271;
-    const wam7_real_t t284 = t283 + (WAM7_C(0.045) * t280 + WAM7_C(-0.3) * t282);
-    const wam7_real_t t285 = t13 * t279 + t15 * t284;
+    const wam7_real_t t281 = t203 * t203; /* link j4: motion */
+    const wam7_real_t t282 = t281 + t256; /* link j5: motion */
+    const wam7_real_t t283 = t71 * t265 + t73 * t271; /* link j4: motion */
+    const wam7_real_t t284 = t283 + (WAM7_C(0.045) * t280 + WAM7_C(-0.3) * t282); /* link j5: motion */
+    const wam7_real_t t285 = t13 * t279 + t15 * t284; /* link j6: motion */
+    /* link j7: force and moment */
     const wam7_real_t t286 = t252 - parameters[YZ7R] * (t253 - t254) - parameters[MY7] * t285;
     const wam7_real_t t287 = t241 + t242;
     const wam7_real_t t288 = t249 + t250;
     const wam7_real_t t289 = t245 * (parameters[XX7R] - parameters[ZZ7]) + parameters[XY7] * t287
         + parameters[YZ7R] * t288;
-    const wam7_real_t t290 = t244 * t244;
+    const wam7_real_t t290 = t244 * t244; /* link j7: motion */
+    /* link j7: force and moment */
     const wam7_real_t t291 = t289 + parameters[XZ7R] * (t290 - t254) + parameters[MX7] * t285;
-    const wam7_real_t t292 = t249 - t248;
+    const wam7_real_t t292 = t249 - t248; /* link j7: motion */
     const wam7_real_t t293 = t234 + t236;
+    /* link j6: force and moment */
     const wam7_real_t t294 = parameters[ZZ6R] * t229 - parameters[XX6R] * t230 + parameters[XY6] * t292
         + parameters[XZ6] * t293;
-    const wam7_real_t t295 = t227 * t227;
+    const wam7_real_t t295 = t227 * t227; /* link j6: motion */
     const wam7_real_t t296 = t228 * t228;
-    const wam7_real_t t297 = t32 * t273 - t34 * t278;
+    const wam7_real_t t297 = t32 * t273 - t34 * t278; /* link j5: motion */
+    /* link j7: what it passes on */
     const wam7_real_t t298 = t294 + parameters[YZ6] * (t295 - t296) - parameters[MY6R] * t297 + (t1 * t291
         - t2 * t286);
-    const wam7_real_t t299 = t15 * t279 - t13 * t284;
+    const wam7_real_t t299 = t15 * t279 - t13 * t284; /* link j6: motion */
+    /* link j7: force and moment */
     const wam7_real_t t300 = parameters[MX7] * (t1 * t299 + t2 * t297) + parameters[MY7] * (t2 * t299
         - t1 * t297);
     const wam7_real_t t301 = parameters[ZZ7] * t249 + parameters[XX7R] * t250 - parameters[YZ7R] * t243
         + parameters[XZ7R] * t238;
     const wam7_real_t t302 = t301 + parameters[XY7] * (t253 - t290) + t300;
+    /* link j6: force and moment */
     const wam7_real_t t303 = parameters[YZ6] * t237 - (t248 * (parameters[ZZ6R] - parameters[XX6R])
         + parameters[XY6] * t231);
-    const wam7_real_t t304 = t235 * t235;
+    const wam7_real_t t304 = t235 * t235; /* link j6: motion */
+    /* link j7: what it passes on */
     const wam7_real_t t305 = t303 + parameters[XZ6] * (t296 - t304) + parameters[MX6] * t297 + t302;
-    const wam7_real_t t306 = t234 - t233;
+    const wam7_real_t t306 = t234 - t233; /* link j6: motion */
     const wam7_real_t t307 = t206 + t209;
+    /* link j5: force and moment */
     const wam7_real_t t308 = parameters[XX5R] * t224 + parameters[ZZ5R] * t223 - parameters[XY5] * t306
         + parameters[XZ5] * t307;
-    const wam7_real_t t309 = t208 * t208;
+    const wam7_real_t t309 = t208 * t208; /* link j5: motion */
     const wam7_real_t t310 = t222 * t222;
+    /* link j6: what it passes on */
     const wam7_real_t t311 = t308 - parameters[YZ5] * (t309 - t310) - parameters[MY5R] * t284 - (t15 * t298
         - t13 * t305);
+    /* link j6: force and moment */
     const wam7_real_t t312 = parameters[XX6R] * t236 - parameters[ZZ6R] * t234 - parameters[YZ6] * t247
         + parameters[XZ6] * t226;
     const wam7_real_t t313 = t312 + parameters[XY6] * (t295 - t304) + (parameters[MX6] * t285
         + parameters[MY6R] * t299);
-    const wam7_real_t t314 = t313 + (t1 * t286 + t2 * t291);
+    const wam7_real_t t314 = t313 + (t1 * t286 + t2 * t291); /* link j7: what it passes on */
+    /* link j5: force and moment */
     const wam7_real_t t315 = parameters[XY5] * t225 - t233 * (parameters[XX5R] - parameters[ZZ5R])
         + parameters[YZ5] * t210;
-    const wam7_real_t t316 = t207 * t207;
+    const wam7_real_t t316 = t207 * t207; /* link j5: motion */
+    /* link j6: what it passes on */
     const wam7_real_t t317 = t315 + parameters[XZ5] * (t316 - t310) + parameters[MX5] * t284 + t314;
+    /* link j7: force and moment */
     const wam7_real_t t318 = parameters[MX7] * (t253 + t254) - parameters[MY7] * t288;
     const wam7_real_t t319 = parameters[MX7] * t251 + parameters[MY7] * (t290 + t254);
+    /* link j7: what it passes on */
     const wam7_real_t t320 = parameters[MX6] * (t295 + t296) + parameters[MY6R] * t237 + (t2 * t318
         - t1 * t319);
     const wam7_real_t t321 = parameters[MX6] * t293 - parameters[MY6R] * (t304 + t296)
         + (parameters[MX7] * t246 + parameters[MY7] * t287);
+    /* link j6: what it passes on */
     const wam7_real_t t322 = parameters[MX5] * (t309 + t310) - parameters[MY5R] * t210 + (t15 * t320
         + t13 * t321);
+    /* link j7: what it passes on */
     const wam7_real_t t323 = parameters[MX6] * t292 + parameters[MY6R] * t231 + (t1 * t318 + t2 * t319);
+    /* link j6: what it passes on */
     const wam7_real_t t324 = parameters[MX5] * t307 + parameters[MY5R] * (t316 + t310) + t323;
-    const wam7_real_t t325 = t32 * t322 + t34 * t324;
+    const wam7_real_t t325 = t32 * t322 + t34 * t324; /* link j5: what it passes on */
+    /* link j4: force and moment */
     const wam7_real_t t326 = parameters[ZZ4R] * t218 - parameters[XX4R] * t219 + parameters[XY4R] * t274
         + parameters[XZ4] * t280;
+    /* link j5: what it passes on */
     const wam7_real_t t327 = t326 + parameters[YZ4] * (t255 - t256) - parameters[MY4R] * t277 + (t32 * t317
         - t34 * t311 + WAM7_C(0.3) * t325);
+    /* link j5: force and moment */
     const wam7_real_t t328 = parameters[ZZ5R] * t206 - parameters[XX5R] * t209 - parameters[YZ5] * t232
         + parameters[XZ5] * t221;
     const wam7_real_t t329 = t328 + parameters[XY5] * (t309 - t316) + (parameters[MX5] * t297
         + parameters[MY5R] * t279);
-    const wam7_real_t t330 = t329 + (t13 * t298 + t15 * t305);
+    const wam7_real_t t330 = t329 + (t13 * t298 + t15 * t305); /* link j6: what it passes on */
+    /* link j4: force and moment */
     const wam7_real_t t331 = t205 * (parameters[ZZ4R] - parameters[XX4R]) - parameters[XY4R] * t220
         + parameters[YZ4] * t216;
+    /* link j5: what it passes on */
     const wam7_real_t t332 = t331 + parameters[XZ4] * (t256 - t281) + parameters[MX4R] * t277 + (t330
         + WAM7_C(-0.045) * t325);
+    /* link j3: force and moment */
     const wam7_real_t t333 = parameters[XX3R] * t200 - parameters[ZZ3R] * t199 - parameters[XY3R] * t266
         + parameters[XZ3] * t275;
+    /* link j4: what it passes on */
     const wam7_real_t t334 = t333 - parameters[YZ3] * (t258 - t259) - parameters[MY3R] * t270 - (t73 * t327
         - t71 * t332);
-    const wam7_real_t t335 = t34 * t322 - t32 * t324;
+    const wam7_real_t t335 = t34 * t322 - t32 * t324; /* link j5: what it passes on */
+    /* link j6: what it passes on */
     const wam7_real_t t336 = parameters[MX5] * t306 + parameters[MY5R] * t225 + (t15 * t321 - t13 * t320);
+    /* link j5: what it passes on */
     const wam7_real_t t337 = t32 * t311 + t34 * t317 + (WAM7_C(0.045) * t336 + WAM7_C(0.3) * t335);
+    /* link j4: force and moment */
     const wam7_real_t t338 = parameters[XZ4] * t217 - (parameters[ZZ4R] * t213 + parameters[XX4R] * t215
         + parameters[YZ4] * t202);
     const wam7_real_t t339 = t338 + parameters[XY4R] * (t255 - t281) + (parameters[MX4R] * t283
         + parameters[MY4R] * t272);
-    const wam7_real_t t340 = t339 + t337;
+    const wam7_real_t t340 = t339 + t337; /* link j5: what it passes on */
     const wam7_real_t t341 = parameters[MX4R] * t257 + parameters[MY4R] * t216 + t335;
     const wam7_real_t t342 = parameters[MY4R] * t282 - parameters[MX4R] * t280 - t336;
+    /* link j3: force and moment */
     const wam7_real_t t343 = t212 * (parameters[XX3R] - parameters[ZZ3R]) + parameters[XY3R] * t201
         + parameters[YZ3] * t192;
-    const wam7_real_t t344 = t188 * t188;
+    const wam7_real_t t344 = t188 * t188; /* link j3: motion */
+    /* link j4: what it passes on */
     const wam7_real_t t345 = t343 + parameters[XZ3] * (t344 - t259) + parameters[MX3R] * t270 + (t340
         + WAM7_C(0.045) * (t71 * t341 + t73 * t342));
     const wam7_real_t t346 = parameters[MX3R] * t260 - parameters[MY3R] * t192 + (t73 * t341 - t71 * t342);
+    /* link j5: what it passes on */
     const wam7_real_t t347 = parameters[MX4R] * t274 + parameters[MY4R] * t220 + t325;
+    /* link j4: what it passes on */
     const wam7_real_t t348 = parameters[MX3R] * t275 + parameters[MY3R] * (t344 + t259) + t347;
+    /* link j3: what it passes on */
     const wam7_real_t t349 = t118 * t345 - t115 * t334 + WAM7_C(0.55) * (t118 * t346 + t115 * t348);
+    /* link j2: force and moment */
     const wam7_real_t t350 = parameters[XY2] * (WAM7_C(2.0) * t191) - (parameters[XX2R] * t195
         + parameters[ZZ2R] * t195);
-    const wam7_real_t t351 = t193 * t193;
+    const wam7_real_t t351 = t193 * t193; /* link j2: motion */
+    /* link j3: what it passes on */
     const wam7_real_t t352 = t350 + parameters[XZ2] * t194 + parameters[YZ2] * (t351 - t268) + t349;
+    /* link j3: force and moment */
     const wam7_real_t t353 = parameters[ZZ3R] * t191 - parameters[XX3R] * t190 - parameters[YZ3] * t211
         + parameters[XZ3] * t197;
     const wam7_real_t t354 = t353 + parameters[XY3R] * (t258 - t344) + (parameters[MX3R] * t276
         + parameters[MY3R] * t264);
+    /* link j4: what it passes on */
     const wam7_real_t t355 = t354 + (t71 * t327 + t73 * t332 + WAM7_C(0.045) * t347);
+    /* link j2: force and moment */
     const wam7_real_t t356 = t191 * (parameters[ZZ2R] - parameters[XX2R]) - parameters[XY2] * t196
         - parameters[YZ2] * t194;
+    /* link j2: what it passes on */
     const wam7_real_t t357 = t157 * t352 + t158 * (t356 + parameters[XZ2] * (t268 - t267) + t355);
-    const wam7_real_t t358 = wam7_sign(dq[0]);
+    const wam7_real_t t358 = wam7_sign(dq[0]); /* joint j1: coulomb_friction */
     const wam7_real_t t359 = WAM7_C(42.0) * (parameters[FV1] * (WAM7_C(-42.0) * dq[0])
         - parameters[FC1] * t358) + t357;
-    const wam7_real_t t360 = wam7_sign(dq[6]);
+    const wam7_real_t t360 = wam7_sign(dq[6]); /* joint j7: coulomb_friction */
     const wam7_real_t t361 = WAM7_C(14.93) * (parameters[FV7] * (WAM7_C(-14.93) * dq[6])
         - parameters[FC7] * t360) + t302;
     const wam7_real_t t362 = WAM7_C(1.00031) * input[6] + t361;
-    const wam7_real_t t363 = wam7_sign(dq[5]);
+    const wam7_real_t t363 = wam7_sign(dq[5]); /* joint j6: coulomb_friction */
     const wam7_real_t t364 = WAM7_C(9.48) * (parameters[FV6] * (WAM7_C(-9.48) * dq[5])
         - parameters[FC6] * t363) + t314;
     const wam7_real_t t365 = WAM7_C(2.23728) * input[5] + t364 + t362 * t5;
     const wam7_real_t t366 = WAM7_C(19.194) * input[0] + t359 - t362 * t179 - t365 * t180;
-    const wam7_real_t t367 = wam7_sign(dq[4]);
+    const wam7_real_t t367 = wam7_sign(dq[4]); /* joint j5: coulomb_friction */
     const wam7_real_t t368 = WAM7_C(9.48) * (parameters[FV5] * (WAM7_C(-9.48) * dq[4])
         - parameters[FC5] * t367) + t330;
     const wam7_real_t t369 = WAM7_C(2.23728) * input[4] + t368 + t362 * t28 + t365 * t21;
-    const wam7_real_t t370 = wam7_sign(dq[3]);
+    const wam7_real_t t370 = wam7_sign(dq[3]); /* joint j4: coulomb_friction */
     const wam7_real_t t371 = WAM7_C(18.0) * (parameters[FV4] * (WAM7_C(-18.0) * dq[3])
         - parameters[FC4] * t370) + t340;
     const wam7_real_t t372 = WAM7_C(8.226) * input[3] + t371 - t362 * t57 - t365 * t56;
     const wam7_real_t t373 = t372 + t369 * t55;
-    const wam7_real_t t374 = wam7_sign(dq[2]);
+    const wam7_real_t t374 = wam7_sign(dq[2]); /* joint j3: coulomb_friction */
     const wam7_real_t t375 = WAM7_C(28.25) * (parameters[FV3] * (WAM7_C(-28.25) * dq[2])
         - parameters[FC3] * t374) + t355;
     const wam7_real_t t376 = WAM7_C(12.910250000000001) * input[2] + t375 - t362 * t107 - t365 * t108;
     const wam7_real_t t377 = t376 + t369 * t109 - t373 * t95;
     const wam7_real_t t378 = t366 + t369 * t181 + t373 * t183 + t377 * t184;
+    /* link j3: what it passes on */
     const wam7_real_t t379 = t118 * t334 + t115 * t345 + WAM7_C(0.55) * (t115 * t346 - t118 * t348);
+    /* link j2: force and moment */
     const wam7_real_t t380 = parameters[XX2R] * t194 + parameters[XY2] * (t351 - t267)
         + (parameters[MX2] * t269 + parameters[MY2R] * t261);
-    const wam7_real_t t381 = wam7_sign(dq[1]);
+    const wam7_real_t t381 = wam7_sign(dq[1]); /* joint j2: coulomb_friction */
     const wam7_real_t t382 = WAM7_C(28.25) * (parameters[FV2] * (WAM7_C(-28.25) * dq[1])
         - parameters[FC2] * t381) + (t380 + t379);
     const wam7_real_t t383 = WAM7_C(12.910250000000001) * input[1] + t382 - t362 * t128 - t365 * t134;

@@ -7,7 +7,7 @@
  * Arm wam7, description 552353c9ea1f05cf.
  * SPDX-License-Identifier: 0BSD
  *
- * Operations: 5105 (2823 mul, 2282 add, 0 neg), 7 div, 12 trig, 7 other.
+ * Operations: 5105 (2823 mul, 2282 add, 0 neg), 7 div, 12 trig, 7 other calls (sign, select and the like).
  *
  * @param[in]   q             [7]   [rad]                    joint coordinates; norm at most 10000
  * @param[in]   dq            [7]   [rad/s]                  joint velocities; norm at most 100000
@@ -15,9 +15,9 @@
  *                                                           norm at most 1e+09
  * @param[in]   parameters    [62]                           base parameters; norm at most 1e+09
  * @param[out]  ddq           [7]   [rad/s^2]                joint accelerations
- * @param[out]  ddq_by_q      [49]  [(rad/s^2) per (rad)]    d ddq / d q; 7 x 7, row-major
+ * @param[out]  ddq_by_q      [49]  [(rad/s^2) per rad]      d ddq / d q; 7 x 7, row-major
  * @param[out]  ddq_by_dq     [49]  [(rad/s^2) per (rad/s)]  d ddq / d dq; 7 x 7, row-major
- * @param[out]  ddq_by_input  [49]  [(rad/s^2) per (A)]      d ddq / d input; 7 x 7, row-major
+ * @param[out]  ddq_by_input  [49]  [(rad/s^2) per A]        d ddq / d input; 7 x 7, row-major
  *
  * Coordinates:
  *
@@ -96,11 +96,11 @@
  */
 #include "wam7_private.h"
 
-#if WAM7_GENERATION != 0x7A21915FUL
+#if WAM7_GENERATION != 0x0E2B7B26UL
 #error "wam7.h and wam7_forward_dynamics_derivatives.c are of different generations: generate the arm again"
 #endif
 
-int wam7_forward_dynamics_derivatives(
+wam7_status_t wam7_forward_dynamics_derivatives(
     const wam7_real_t q[WAM7_N_JOINTS],
     const wam7_real_t dq[WAM7_N_JOINTS],
     const wam7_real_t input[WAM7_N_JOINTS],
@@ -114,7 +114,7 @@ int wam7_forward_dynamics_derivatives(
         XZ4, YZ4, ZZ4R, MX4R, MY4R, XX5R, XY5, XZ5, YZ5, ZZ5R, MX5, MY5R, XX6R, XY6, XZ6, YZ6, ZZ6R, MX6,
         MY6R, XX7R, XY7, XZ7R, YZ7R, ZZ7, MX7, MY7, FV1, FC1, FV2, FC2, FV3, FC3, IA3, FV4, FC4, IA4, FV5,
         FC5, IA5, FV6, FC6, IA6, FV7, FC7, IA7 };
-    int status = WAM7_STATUS_OK;
+    wam7_status_t status = WAM7_STATUS_OK;
 
     if (!wam7_within_joints(q, WAM7_C(1.0e8))
         || !wam7_within_joints(dq, WAM7_C(1.0e10))
@@ -150,9 +150,11 @@ int wam7_forward_dynamics_derivatives(
         wam7_zero(ddq_by_input, 49);
         return WAM7_STATUS_PIVOT;
     }
+    /* link j7: column of the mass matrix */
     const wam7_real_t t3 = t1 * parameters[XZ7R] + t2 * parameters[YZ7R];
     const wam7_real_t t4 = WAM7_C(1.0) / t0;
     const wam7_real_t t5 = t3 * t4;
+    /* link j7: inertia of it and all beyond */
     const wam7_real_t t6 = parameters[XY7] * (WAM7_C(2.0) * t1) - t2 * parameters[XX7R];
     const wam7_real_t t7 = t2 * t6;
     const wam7_real_t t8 = parameters[ZZ6R] + (parameters[XX7R] + t7);
@@ -175,14 +177,16 @@ int wam7_forward_dynamics_derivatives(
     }
     const wam7_real_t t12 = t1 * t6 - parameters[XY7] - parameters[XZ6];
     const wam7_real_t t14 = t3 - parameters[YZ6];
-    const wam7_real_t t16 = t13 * t12 + t15 * t14;
+    const wam7_real_t t16 = t13 * t12 + t15 * t14; /* link j6: column of the mass matrix */
+    /* link j7: column of the mass matrix */
     const wam7_real_t t17 = t1 * parameters[YZ7R] - t2 * parameters[XZ7R];
     const wam7_real_t t18 = t13 * t17 + t15 * parameters[ZZ7];
     const wam7_real_t t19 = t18 * t5 - t16;
     const wam7_real_t t20 = WAM7_C(1.0) / t10;
     const wam7_real_t t21 = t19 * t20;
-    const wam7_real_t t22 = parameters[XX6R] - t7;
+    const wam7_real_t t22 = parameters[XX6R] - t7; /* link j7: inertia of it and all beyond */
     const wam7_real_t t23 = parameters[XY6] + t17;
+    /* link j6: inertia of it and all beyond */
     const wam7_real_t t24 = t15 * (t22 - parameters[ZZ7]) + t23 * (WAM7_C(-2.0) * t13);
     const wam7_real_t t25 = t15 * t24;
     const wam7_real_t t26 = parameters[ZZ5R] + (t22 - t25);
@@ -206,20 +210,22 @@ int wam7_forward_dynamics_derivatives(
     }
     const wam7_real_t t31 = t23 + t13 * t24 - parameters[XZ5];
     const wam7_real_t t33 = parameters[YZ5] + t16;
+    /* link j7: column of the mass matrix */
     const wam7_real_t t35 = t2 * parameters[MY7] + t1 * parameters[MX7];
-    const wam7_real_t t36 = parameters[MY5R] + t35;
+    const wam7_real_t t36 = parameters[MY5R] + t35; /* link j6: inertia of it and all beyond */
+    /* link j7: column of the mass matrix */
     const wam7_real_t t37 = t2 * parameters[MX7] - t1 * parameters[MY7];
-    const wam7_real_t t38 = parameters[MX6] + t37;
-    const wam7_real_t t39 = t13 * parameters[MY6R] - t15 * t38;
-    const wam7_real_t t40 = t39 - parameters[MX5];
-    const wam7_real_t t41 = t32 * t40 - t34 * t36;
+    const wam7_real_t t38 = parameters[MX6] + t37; /* link j7: inertia of it and all beyond */
+    const wam7_real_t t39 = t13 * parameters[MY6R] - t15 * t38; /* link j6: column of the mass matrix */
+    const wam7_real_t t40 = t39 - parameters[MX5]; /* link j6: inertia of it and all beyond */
+    const wam7_real_t t41 = t32 * t40 - t34 * t36; /* link j5: column of the mass matrix */
     const wam7_real_t t42 = t32 * t31 - t34 * t33 + WAM7_C(-0.3) * t41;
-    const wam7_real_t t43 = t15 * t17 - t13 * parameters[ZZ7];
+    const wam7_real_t t43 = t15 * t17 - t13 * parameters[ZZ7]; /* link j7: column of the mass matrix */
     const wam7_real_t t44 = t15 * t35;
     const wam7_real_t t45 = t34 * t44 + t32 * t37;
     const wam7_real_t t46 = t13 * t35;
     const wam7_real_t t47 = t32 * t43 - t34 * t3 + (WAM7_C(-0.045) * t46 + WAM7_C(0.3) * t45);
-    const wam7_real_t t48 = t15 * t12 - t13 * t14;
+    const wam7_real_t t48 = t15 * t12 - t13 * t14; /* link j6: column of the mass matrix */
     const wam7_real_t t49 = t15 * parameters[MY6R] + t13 * t38;
     const wam7_real_t t50 = t34 * t49;
     const wam7_real_t t51 = t32 * t48 - t34 * t8 + (WAM7_C(-0.045) * t39 + WAM7_C(0.3) * t50);
@@ -229,12 +235,14 @@ int wam7_forward_dynamics_derivatives(
     const wam7_real_t t55 = t53 * t54;
     const wam7_real_t t56 = t52 * t20;
     const wam7_real_t t57 = t47 * t4;
+    /* link j6: inertia of it and all beyond */
     const wam7_real_t t58 = parameters[XX5R] + (parameters[ZZ7] + t25);
     const wam7_real_t t59 = parameters[XY5] - t48;
+    /* link j5: inertia of it and all beyond */
     const wam7_real_t t60 = t34 * (t8 - t58) + t59 * (WAM7_C(2.0) * t32);
     const wam7_real_t t61 = t34 * t60;
-    const wam7_real_t t62 = t32 * t36 + t34 * t40;
-    const wam7_real_t t63 = WAM7_C(0.09) * t62;
+    const wam7_real_t t62 = t32 * t36 + t34 * t40; /* link j5: column of the mass matrix */
+    const wam7_real_t t63 = WAM7_C(0.09) * t62; /* link j5: inertia of it and all beyond */
     const wam7_real_t t64 = WAM7_C(-0.6) * t49;
     const wam7_real_t t65 = parameters[ZZ4R] + (t58 + t61 + (t63 + t64));
     const wam7_real_t t66 = t65 + WAM7_C(324.0) * parameters[IA4];
@@ -257,19 +265,19 @@ int wam7_forward_dynamics_derivatives(
     const wam7_real_t t69 = WAM7_C(0.045) * t41;
     const wam7_real_t t70 = parameters[XZ4] + (t59 - t32 * t60 - t69);
     const wam7_real_t t72 = parameters[YZ4] + t42;
-    const wam7_real_t t74 = t71 * t70 + t73 * t72;
-    const wam7_real_t t75 = t32 * t44 - t34 * t37;
+    const wam7_real_t t74 = t71 * t70 + t73 * t72; /* link j4: column of the mass matrix */
+    const wam7_real_t t75 = t32 * t44 - t34 * t37; /* link j7: column of the mass matrix */
     const wam7_real_t t76 = WAM7_C(0.3) * t75 - (t34 * t43 + t32 * t3);
     const wam7_real_t t77 = WAM7_C(0.045) * t75;
     const wam7_real_t t78 = t18 + t77;
     const wam7_real_t t79 = t73 * t78 - t71 * t76 - t77;
-    const wam7_real_t t80 = t32 * t49;
+    const wam7_real_t t80 = t32 * t49; /* link j6: column of the mass matrix */
     const wam7_real_t t81 = WAM7_C(0.3) * t80 - (t34 * t48 + t32 * t8);
     const wam7_real_t t82 = WAM7_C(0.045) * t80;
     const wam7_real_t t83 = t16 + t82;
     const wam7_real_t t84 = t73 * t83 - t71 * t81 - t82;
     const wam7_real_t t85 = t79 * t5 - t84;
-    const wam7_real_t t86 = t34 * t31 + t32 * t33;
+    const wam7_real_t t86 = t34 * t31 + t32 * t33; /* link j5: column of the mass matrix */
     const wam7_real_t t87 = WAM7_C(-0.3) * t62;
     const wam7_real_t t88 = t86 + t87;
     const wam7_real_t t89 = WAM7_C(0.045) * t62;
@@ -279,15 +287,16 @@ int wam7_forward_dynamics_derivatives(
     const wam7_real_t t93 = t74 - t79 * t57 + t85 * t56 + t92 * t55;
     const wam7_real_t t94 = WAM7_C(1.0) / t67;
     const wam7_real_t t95 = t93 * t94;
-    const wam7_real_t t96 = t26 + t63;
+    const wam7_real_t t96 = t26 + t63; /* link j5: inertia of it and all beyond */
     const wam7_real_t t97 = parameters[XX4R] + (t8 - t61 + t64);
     const wam7_real_t t98 = parameters[XY4R] + (t86 + (t87 + WAM7_C(0.045) * t49));
+    /* link j4: inertia of it and all beyond */
     const wam7_real_t t99 = t73 * (t96 - t97) + t98 * (WAM7_C(2.0) * t71);
     const wam7_real_t t100 = t73 * t99;
-    const wam7_real_t t101 = parameters[MX4R] - t62;
+    const wam7_real_t t101 = parameters[MX4R] - t62; /* link j5: inertia of it and all beyond */
     const wam7_real_t t102 = parameters[MY4R] + t49;
-    const wam7_real_t t103 = t73 * t101 - t71 * t102;
-    const wam7_real_t t104 = WAM7_C(0.09) * t103;
+    const wam7_real_t t103 = t73 * t101 - t71 * t102; /* link j4: column of the mass matrix */
+    const wam7_real_t t104 = WAM7_C(0.09) * t103; /* link j4: inertia of it and all beyond */
     const wam7_real_t t105 = parameters[ZZ3R] + (t97 + t100 + t104);
     const wam7_real_t t106 = t105 + WAM7_C(798.0625) * parameters[IA3];
     const wam7_real_t t107 = t79 * t4;
@@ -312,21 +321,22 @@ int wam7_forward_dynamics_derivatives(
     }
     const wam7_real_t t113 = t100 - t96 - parameters[XX3R];
     const wam7_real_t t114 = t65 + t104;
-    const wam7_real_t t116 = t73 * t70 - t71 * t72;
-    const wam7_real_t t117 = parameters[XY3R] + (t69 + t116);
+    const wam7_real_t t116 = t73 * t70 - t71 * t72; /* link j4: column of the mass matrix */
+    const wam7_real_t t117 = parameters[XY3R] + (t69 + t116); /* link j4: inertia of it and all beyond */
+    /* link j3: inertia of it and all beyond */
     const wam7_real_t t119 = t115 * (t114 + t113) + t117 * (WAM7_C(2.0) * t118);
     const wam7_real_t t120 = t115 * t119;
-    const wam7_real_t t121 = t73 * t102 + t71 * t101;
-    const wam7_real_t t122 = WAM7_C(1.1) * t121;
+    const wam7_real_t t121 = t73 * t102 + t71 * t101; /* link j4: column of the mass matrix */
+    const wam7_real_t t122 = WAM7_C(1.1) * t121; /* link j3: inertia of it and all beyond */
     const wam7_real_t t123 = parameters[ZZ2R] + (t120 - t113 - t122);
-    const wam7_real_t t124 = t73 * t76 + t71 * t78;
+    const wam7_real_t t124 = t73 * t76 + t71 * t78; /* link j7: column of the mass matrix */
     const wam7_real_t t125 = t71 * t45 + t73 * t46;
     const wam7_real_t t126 = t47 + WAM7_C(0.045) * t125;
     const wam7_real_t t127 = t71 * t46 - t73 * t45;
     const wam7_real_t t128 = t115 * t127 + t118 * t75;
     const wam7_real_t t129 = t118 * t124 - t115 * t126 - WAM7_C(-0.55) * t128;
     const wam7_real_t t130 = t129 * t4;
-    const wam7_real_t t131 = t73 * t81 + t71 * t83;
+    const wam7_real_t t131 = t73 * t81 + t71 * t83; /* link j6: column of the mass matrix */
     const wam7_real_t t132 = t71 * t50 + t73 * t39;
     const wam7_real_t t133 = t51 + WAM7_C(0.045) * t132;
     const wam7_real_t t134 = t71 * t39 - t73 * t50;
@@ -334,7 +344,7 @@ int wam7_forward_dynamics_derivatives(
     const wam7_real_t t136 = t118 * t131 - t115 * t133 + WAM7_C(0.55) * t135;
     const wam7_real_t t137 = t136 - t129 * t5;
     const wam7_real_t t138 = t137 * t20;
-    const wam7_real_t t139 = t71 * t90 - t73 * t88;
+    const wam7_real_t t139 = t71 * t90 - t73 * t88; /* link j5: column of the mass matrix */
     const wam7_real_t t140 = t71 * t41;
     const wam7_real_t t141 = t42 + WAM7_C(-0.045) * t140;
     const wam7_real_t t142 = t73 * t41;
@@ -343,16 +353,17 @@ int wam7_forward_dynamics_derivatives(
     const wam7_real_t t145 = t144 - t129 * t28 + t137 * t21;
     const wam7_real_t t146 = t145 * t54;
     const wam7_real_t t147 = t123 - t129 * t130 - t137 * t138 - t145 * t146;
-    const wam7_real_t t148 = t65 + WAM7_C(0.045) * t103;
+    const wam7_real_t t148 = t65 + WAM7_C(0.045) * t103; /* link j4: column of the mass matrix */
     const wam7_real_t t149 = t115 * t121;
     const wam7_real_t t150 = WAM7_C(0.55) * t149 - (t118 * t116 + t115 * t148);
     const wam7_real_t t151 = t150 - t129 * t57 - t137 * t56 - t145 * t55;
     const wam7_real_t t152 = t151 * t94;
+    /* link j4: inertia of it and all beyond */
     const wam7_real_t t153 = parameters[XZ3] - (t98 - t71 * t99 - WAM7_C(0.045) * t121);
     const wam7_real_t t154 = t74 - parameters[YZ3];
     const wam7_real_t t155 = t41 - parameters[MY3R];
     const wam7_real_t t156 = parameters[MX3R] + t103;
-    const wam7_real_t t157 = t115 * t155 - t118 * t156;
+    const wam7_real_t t157 = t115 * t155 - t118 * t156; /* link j3: column of the mass matrix */
     const wam7_real_t t158 = t118 * t153 - t115 * t154 + WAM7_C(0.55) * t157;
     const wam7_real_t t159 = t158 - t129 * t107 + t137 * t108 + t145 * t109;
     const wam7_real_t t160 = t159 - t151 * t95;
@@ -374,31 +385,33 @@ int wam7_forward_dynamics_derivatives(
         wam7_zero(ddq_by_input, 49);
         return WAM7_STATUS_PIVOT;
     }
-    const wam7_real_t t165 = t118 * t119 - t117 - parameters[XZ2];
+    const wam7_real_t t165 = t118 * t119 - t117 - parameters[XZ2]; /* link j3: inertia of it and all beyond */
     const wam7_real_t t167 = parameters[YZ2] - t158;
-    const wam7_real_t t169 = t115 * t75 - t118 * t127;
+    const wam7_real_t t169 = t115 * t75 - t118 * t127; /* link j7: column of the mass matrix */
     const wam7_real_t t170 = t115 * t124 + t118 * t126 + WAM7_C(0.55) * t169;
     const wam7_real_t t171 = t166 * t170 - t168 * t79;
-    const wam7_real_t t172 = t115 * t80 - t118 * t134;
+    const wam7_real_t t172 = t115 * t80 - t118 * t134; /* link j6: column of the mass matrix */
     const wam7_real_t t173 = t115 * t131 + t118 * t133 + WAM7_C(0.55) * t172;
     const wam7_real_t t174 = t166 * t173 - t168 * t84 - t171 * t5;
     const wam7_real_t t175 = t166 * t165 - t168 * t167 + t171 * t130 + t174 * t138;
-    const wam7_real_t t176 = t115 * t62 - t118 * t142;
+    const wam7_real_t t176 = t115 * t62 - t118 * t142; /* link j5: column of the mass matrix */
     const wam7_real_t t177 = t115 * t139 + t118 * t141 + WAM7_C(0.55) * t176;
     const wam7_real_t t178 = t166 * t177 - t168 * t91 - t171 * t28 + t174 * t21;
-    const wam7_real_t t179 = t118 * t121;
+    const wam7_real_t t179 = t118 * t121; /* link j4: column of the mass matrix */
     const wam7_real_t t180 = t118 * t148 - t115 * t116 + WAM7_C(-0.55) * t179;
     const wam7_real_t t181 = t168 * t74 - t166 * t180 + t171 * t57 + t174 * t56;
     const wam7_real_t t182 = t181 + t178 * t55;
-    const wam7_real_t t183 = t118 * t155 + t115 * t156;
+    const wam7_real_t t183 = t118 * t155 + t115 * t156; /* link j3: column of the mass matrix */
     const wam7_real_t t184 = t115 * t153 + t118 * t154 + WAM7_C(-0.55) * t183;
     const wam7_real_t t185 = t166 * t184 - t168 * t105 - t171 * t107 + t174 * t108;
     const wam7_real_t t186 = t185 + t178 * t109 + t182 * t95;
     const wam7_real_t t187 = t175 + t178 * t146 - t182 * t152 + t186 * t162;
     const wam7_real_t t188 = WAM7_C(1.0) / t163;
     const wam7_real_t t189 = t187 * t188;
+    /* link j3: inertia of it and all beyond */
     const wam7_real_t t190 = t120 - t114 + t122 - parameters[XX2R];
     const wam7_real_t t191 = parameters[XY2] - t184;
+    /* link j2: inertia of it and all beyond */
     const wam7_real_t t192 = t168 * (t168 * (t105 + t190) + t191 * (WAM7_C(2.0) * t166));
     const wam7_real_t t193 = parameters[ZZ1R] + (t192 - t190);
     const wam7_real_t t194 = t171 * t4;
@@ -423,129 +436,132 @@ int wam7_forward_dynamics_derivatives(
         wam7_zero(ddq_by_input, 49);
         return WAM7_STATUS_PIVOT;
     }
-    const wam7_real_t t202 = t166 * dq[0];
-    const wam7_real_t t203 = t115 * t202 - t118 * dq[1];
+    const wam7_real_t t202 = t166 * dq[0]; /* link j2: motion */
+    const wam7_real_t t203 = t115 * t202 - t118 * dq[1]; /* link j3: motion */
     const wam7_real_t t204 = t118 * t202 + t115 * dq[1];
     const wam7_real_t t205 = t203 * t204;
-    const wam7_real_t t206 = dq[1] * t202;
-    const wam7_real_t t207 = t206 - t205;
-    const wam7_real_t t208 = t168 * dq[0];
+    const wam7_real_t t206 = dq[1] * t202; /* link j2: motion */
+    const wam7_real_t t207 = t206 - t205; /* link j4: motion */
+    const wam7_real_t t208 = t168 * dq[0]; /* link j2: motion */
     const wam7_real_t t209 = t202 * t208;
     const wam7_real_t t210 = dq[1] * t208;
     const wam7_real_t t211 = WAM7_C(2.0) * t210;
-    const wam7_real_t t212 = t118 * t209 + t115 * t211;
+    const wam7_real_t t212 = t118 * t209 + t115 * t211; /* link j3: motion */
     const wam7_real_t t213 = dq[2] + t208;
     const wam7_real_t t214 = t204 * t213;
     const wam7_real_t t215 = t212 - t214;
-    const wam7_real_t t216 = t215 - t214;
+    const wam7_real_t t216 = t215 - t214; /* link j4: motion */
     const wam7_real_t t217 = t73 * t207 + t71 * t216;
     const wam7_real_t t218 = t73 * t203 + t71 * t213;
     const wam7_real_t t219 = dq[3] + t204;
     const wam7_real_t t220 = t218 * t219;
     const wam7_real_t t221 = t217 + t220;
-    const wam7_real_t t222 = t34 * t218 - t32 * t219;
+    const wam7_real_t t222 = t34 * t218 - t32 * t219; /* link j5: motion */
     const wam7_real_t t223 = t32 * t218 + t34 * t219;
     const wam7_real_t t224 = t222 * t223;
-    const wam7_real_t t225 = t221 - t224;
-    const wam7_real_t t226 = t118 * t211 - t115 * t209;
+    const wam7_real_t t225 = t221 - t224; /* link j6: motion */
+    const wam7_real_t t226 = t118 * t211 - t115 * t209; /* link j3: motion */
     const wam7_real_t t227 = t203 * t213;
     const wam7_real_t t228 = t226 + t227;
-    const wam7_real_t t229 = t73 * t213 - t71 * t203;
+    const wam7_real_t t229 = t73 * t213 - t71 * t203; /* link j4: motion */
     const wam7_real_t t230 = t218 * t229;
-    const wam7_real_t t231 = t228 - t230;
-    const wam7_real_t t232 = t73 * t216 - t71 * t207;
+    const wam7_real_t t231 = t228 - t230; /* link j5: motion */
+    const wam7_real_t t232 = t73 * t216 - t71 * t207; /* link j4: motion */
     const wam7_real_t t233 = t229 * t219;
     const wam7_real_t t234 = t232 + t233;
-    const wam7_real_t t235 = t233 + t234;
+    const wam7_real_t t235 = t233 + t234; /* link j5: motion */
     const wam7_real_t t236 = t34 * t235 - t32 * t231;
     const wam7_real_t t237 = dq[4] + t229;
     const wam7_real_t t238 = t223 * t237;
     const wam7_real_t t239 = t236 - t238;
-    const wam7_real_t t240 = t239 - t238;
+    const wam7_real_t t240 = t239 - t238; /* link j6: motion */
     const wam7_real_t t241 = t15 * t240 - t13 * t225;
     const wam7_real_t t242 = t13 * t222 - t15 * t237;
     const wam7_real_t t243 = dq[5] + t223;
     const wam7_real_t t244 = t242 * t243;
     const wam7_real_t t245 = t241 - t244;
-    const wam7_real_t t246 = t245 - t244;
-    const wam7_real_t t247 = t34 * t231 + t32 * t235;
+    const wam7_real_t t246 = t245 - t244; /* link j7: motion */
+    const wam7_real_t t247 = t34 * t231 + t32 * t235; /* link j5: motion */
     const wam7_real_t t248 = t222 * t237;
     const wam7_real_t t249 = t247 + t248;
-    const wam7_real_t t250 = t15 * t222 + t13 * t237;
+    const wam7_real_t t250 = t15 * t222 + t13 * t237; /* link j6: motion */
     const wam7_real_t t251 = t250 * t242;
-    const wam7_real_t t252 = t249 + t251;
+    const wam7_real_t t252 = t249 + t251; /* link j7: motion */
     const wam7_real_t t253 = t2 * t246 - t1 * t252;
     const wam7_real_t t254 = t1 * t250 + t2 * t243;
     const wam7_real_t t255 = t242 - dq[6];
     const wam7_real_t t256 = t254 * t255;
     const wam7_real_t t257 = t253 + t256;
-    const wam7_real_t t258 = parameters[ZZ7] * t256;
-    const wam7_real_t t259 = t2 * t252 + t1 * t246;
+    const wam7_real_t t258 = parameters[ZZ7] * t256; /* link j7: force and moment */
+    const wam7_real_t t259 = t2 * t252 + t1 * t246; /* link j7: motion */
     const wam7_real_t t260 = t2 * t250 - t1 * t243;
     const wam7_real_t t261 = t260 * t255;
-    const wam7_real_t t262 = t259 - t261 - t261;
-    const wam7_real_t t263 = t15 * t225 + t13 * t240;
+    const wam7_real_t t262 = t259 - t261 - t261; /* link j7: force and moment */
+    const wam7_real_t t263 = t15 * t225 + t13 * t240; /* link j6: motion */
     const wam7_real_t t264 = t250 * t243;
     const wam7_real_t t265 = t263 + t264;
-    const wam7_real_t t266 = t260 * t254;
-    const wam7_real_t t267 = t265 + t266;
+    const wam7_real_t t266 = t260 * t254; /* link j7: motion */
+    const wam7_real_t t267 = t265 + t266; /* link j7: force and moment */
     const wam7_real_t t268 = parameters[XX7R] * t257 + t258 - parameters[XY7] * t262
         + parameters[XZ7R] * t267;
-    const wam7_real_t t269 = t254 * t254;
+    const wam7_real_t t269 = t254 * t254; /* link j7: motion */
     const wam7_real_t t270 = t255 * t255;
-    const wam7_real_t t271 = parameters[YZ7R] * (t270 - t269);
-    const wam7_real_t t272 = t229 * t229;
+    const wam7_real_t t271 = parameters[YZ7R] * (t270 - t269); /* link j7: force and moment */
+    const wam7_real_t t272 = t229 * t229; /* link j4: motion */
     const wam7_real_t t273 = t219 * t219;
-    const wam7_real_t t274 = t272 + t273;
+    const wam7_real_t t274 = t272 + t273; /* link j5: motion */
     const wam7_real_t t275 = WAM7_C(0.045) * t274;
-    const wam7_real_t t276 = t204 * t204;
+    const wam7_real_t t276 = t204 * t204; /* link j3: motion */
     const wam7_real_t t277 = t213 * t213;
-    const wam7_real_t t278 = t276 + t277;
+    const wam7_real_t t278 = t276 + t277; /* link j4: motion */
     const wam7_real_t t279 = WAM7_C(0.045) * t278;
-    const wam7_real_t t280 = WAM7_C(9.81) * t166;
-    const wam7_real_t t281 = WAM7_C(-0.55) * t209 - t280;
+    const wam7_real_t t280 = WAM7_C(9.81) * t166; /* link j2: motion */
+    const wam7_real_t t281 = WAM7_C(-0.55) * t209 - t280; /* link j3: motion */
     const wam7_real_t t282 = WAM7_C(1.1) * t210;
     const wam7_real_t t283 = t115 * t281 + t118 * t282;
-    const wam7_real_t t284 = t283 - t279;
+    const wam7_real_t t284 = t283 - t279; /* link j4: motion */
     const wam7_real_t t285 = t227 + t228;
-    const wam7_real_t t286 = t202 * t202;
+    const wam7_real_t t286 = t202 * t202; /* link j2: motion */
     const wam7_real_t t287 = dq[1] * dq[1];
     const wam7_real_t t288 = WAM7_C(9.81) * t168;
-    const wam7_real_t t289 = t288 + WAM7_C(-0.55) * (t287 + t286);
-    const wam7_real_t t290 = t289 - WAM7_C(0.045) * t285;
+    const wam7_real_t t289 = t288 + WAM7_C(-0.55) * (t287 + t286); /* link j3: motion */
+    const wam7_real_t t290 = t289 - WAM7_C(0.045) * t285; /* link j4: motion */
     const wam7_real_t t291 = t73 * t284 - t71 * t290;
-    const wam7_real_t t292 = t291 + (t275 + WAM7_C(0.3) * t231);
+    const wam7_real_t t292 = t291 + (t275 + WAM7_C(0.3) * t231); /* link j5: motion */
     const wam7_real_t t293 = t220 + t221;
-    const wam7_real_t t294 = t206 + t205;
-    const wam7_real_t t295 = t118 * t281 - t115 * t282;
-    const wam7_real_t t296 = t295 + WAM7_C(0.045) * t294;
-    const wam7_real_t t297 = WAM7_C(0.045) * t293 - WAM7_C(-0.3) * t235 - t296;
+    const wam7_real_t t294 = t206 + t205; /* link j4: motion */
+    const wam7_real_t t295 = t118 * t281 - t115 * t282; /* link j3: motion */
+    const wam7_real_t t296 = t295 + WAM7_C(0.045) * t294; /* link j4: motion */
+    const wam7_real_t t297 = WAM7_C(0.045) * t293 - WAM7_C(-0.3) * t235 - t296; /* link j5: motion */
     const wam7_real_t t298 = t34 * t292 + t32 * t297;
     const wam7_real_t t299 = t228 + t230;
-    const wam7_real_t t300 = t218 * t218;
-    const wam7_real_t t301 = t300 + t273;
+    const wam7_real_t t300 = t218 * t218; /* link j4: motion */
+    const wam7_real_t t301 = t300 + t273; /* link j5: motion */
     const wam7_real_t t302 = WAM7_C(0.3) * t301;
-    const wam7_real_t t303 = t71 * t284 + t73 * t290;
-    const wam7_real_t t304 = t303 + (WAM7_C(0.045) * t299 - t302);
-    const wam7_real_t t305 = t13 * t298 + t15 * t304;
-    const wam7_real_t t306 = t268 + t271 - parameters[MY7] * t305;
+    const wam7_real_t t303 = t71 * t284 + t73 * t290; /* link j4: motion */
+    const wam7_real_t t304 = t303 + (WAM7_C(0.045) * t299 - t302); /* link j5: motion */
+    const wam7_real_t t305 = t13 * t298 + t15 * t304; /* link j6: motion */
+    const wam7_real_t t306 = t268 + t271 - parameters[MY7] * t305; /* link j7: force and moment */
     const wam7_real_t t307 = t256 + t257;
     const wam7_real_t t308 = t261 * (parameters[XX7R] - parameters[ZZ7]);
     const wam7_real_t t309 = t265 - t266;
-    const wam7_real_t t310 = t260 * t260;
-    const wam7_real_t t311 = parameters[XZ7R] * (t310 - t270);
+    const wam7_real_t t310 = t260 * t260; /* link j7: motion */
+    const wam7_real_t t311 = parameters[XZ7R] * (t310 - t270); /* link j7: force and moment */
     const wam7_real_t t312 = parameters[XY7] * t307 - t308 + parameters[YZ7R] * t309 + t311
         + parameters[MX7] * t305;
-    const wam7_real_t t313 = parameters[ZZ6R] * t244;
-    const wam7_real_t t314 = t264 + t265;
+    const wam7_real_t t313 = parameters[ZZ6R] * t244; /* link j6: force and moment */
+    const wam7_real_t t314 = t264 + t265; /* link j7: motion */
     const wam7_real_t t315 = t249 - t251;
+    /* link j6: force and moment */
     const wam7_real_t t316 = t313 - parameters[XX6R] * t245 + parameters[XY6] * t314 + parameters[XZ6] * t315;
-    const wam7_real_t t317 = t242 * t242;
+    const wam7_real_t t317 = t242 * t242; /* link j6: motion */
     const wam7_real_t t318 = t243 * t243;
-    const wam7_real_t t319 = parameters[YZ6] * (t317 - t318);
-    const wam7_real_t t320 = t32 * t292 - t34 * t297;
+    const wam7_real_t t319 = parameters[YZ6] * (t317 - t318); /* link j6: force and moment */
+    const wam7_real_t t320 = t32 * t292 - t34 * t297; /* link j5: motion */
+    /* link j7: what it passes on */
     const wam7_real_t t321 = t316 + t319 - parameters[MY6R] * t320 + (t1 * t312 - t2 * t306);
-    const wam7_real_t t322 = t15 * t298 - t13 * t304;
+    const wam7_real_t t322 = t15 * t298 - t13 * t304; /* link j6: motion */
+    /* link j7: force and moment */
     const wam7_real_t t323 = parameters[MX7] * (t1 * t322 + t2 * t320) + parameters[MY7] * (t2 * t322
         - t1 * t320);
     const wam7_real_t t324 = parameters[XX7R] * t266;
@@ -553,136 +569,156 @@ int wam7_forward_dynamics_derivatives(
         + parameters[XZ7R] * t253;
     const wam7_real_t t326 = parameters[XY7] * (t310 - t269);
     const wam7_real_t t327 = t325 - t326 + t323;
-    const wam7_real_t t328 = t264 * (parameters[XX6R] - parameters[ZZ6R]);
-    const wam7_real_t t329 = t250 * t250;
-    const wam7_real_t t330 = parameters[XZ6] * (t329 - t318);
+    const wam7_real_t t328 = t264 * (parameters[XX6R] - parameters[ZZ6R]); /* link j6: force and moment */
+    const wam7_real_t t329 = t250 * t250; /* link j6: motion */
+    const wam7_real_t t330 = parameters[XZ6] * (t329 - t318); /* link j6: force and moment */
     const wam7_real_t t331 = parameters[YZ6] * t252 - (t328 + parameters[XY6] * t246) - t330
         + parameters[MX6] * t320;
-    const wam7_real_t t332 = t331 + t327;
-    const wam7_real_t t333 = parameters[ZZ5R] * t238;
-    const wam7_real_t t334 = t248 + t249;
+    const wam7_real_t t332 = t331 + t327; /* link j7: what it passes on */
+    const wam7_real_t t333 = parameters[ZZ5R] * t238; /* link j5: force and moment */
+    const wam7_real_t t334 = t248 + t249; /* link j6: motion */
     const wam7_real_t t335 = t221 + t224;
+    /* link j5: force and moment */
     const wam7_real_t t336 = parameters[XX5R] * t239 - t333 - parameters[XY5] * t334 + parameters[XZ5] * t335;
-    const wam7_real_t t337 = t223 * t223;
+    const wam7_real_t t337 = t223 * t223; /* link j5: motion */
     const wam7_real_t t338 = t237 * t237;
-    const wam7_real_t t339 = parameters[YZ5] * (t338 - t337);
+    const wam7_real_t t339 = parameters[YZ5] * (t338 - t337); /* link j5: force and moment */
+    /* link j6: what it passes on */
     const wam7_real_t t340 = t336 + t339 - parameters[MY5R] * t304 - (t15 * t321 - t13 * t332);
-    const wam7_real_t t341 = parameters[XX6R] * t251;
+    const wam7_real_t t341 = parameters[XX6R] * t251; /* link j6: force and moment */
     const wam7_real_t t342 = parameters[XZ6] * t241 - (parameters[ZZ6R] * t249 + t341
         + parameters[YZ6] * t263);
     const wam7_real_t t343 = parameters[XY6] * (t317 - t329);
+    /* link j7: what it passes on */
     const wam7_real_t t344 = t342 + t343 + (parameters[MX6] * t305 + parameters[MY6R] * t322) + (t1 * t306
         + t2 * t312);
-    const wam7_real_t t345 = t248 * (parameters[XX5R] - parameters[ZZ5R]);
-    const wam7_real_t t346 = t222 * t222;
-    const wam7_real_t t347 = parameters[XZ5] * (t346 - t338);
+    const wam7_real_t t345 = t248 * (parameters[XX5R] - parameters[ZZ5R]); /* link j5: force and moment */
+    const wam7_real_t t346 = t222 * t222; /* link j5: motion */
+    const wam7_real_t t347 = parameters[XZ5] * (t346 - t338); /* link j5: force and moment */
     const wam7_real_t t348 = t345 + parameters[XY5] * t240 + parameters[YZ5] * t225 + t347
         + parameters[MX5] * t304;
-    const wam7_real_t t349 = t348 + t344;
-    const wam7_real_t t350 = parameters[MX7] * (t269 + t270);
+    const wam7_real_t t349 = t348 + t344; /* link j6: what it passes on */
+    const wam7_real_t t350 = parameters[MX7] * (t269 + t270); /* link j7: force and moment */
     const wam7_real_t t351 = t350 - parameters[MY7] * t309;
     const wam7_real_t t352 = parameters[MY7] * (t310 + t270);
     const wam7_real_t t353 = parameters[MX7] * t267 + t352;
-    const wam7_real_t t354 = parameters[MX6] * (t317 + t318);
+    const wam7_real_t t354 = parameters[MX6] * (t317 + t318); /* link j6: force and moment */
+    /* link j7: what it passes on */
     const wam7_real_t t355 = t354 + parameters[MY6R] * t252 + (t2 * t351 - t1 * t353);
-    const wam7_real_t t356 = parameters[MY6R] * (t329 + t318);
+    const wam7_real_t t356 = parameters[MY6R] * (t329 + t318); /* link j6: force and moment */
+    /* link j7: what it passes on */
     const wam7_real_t t357 = parameters[MX6] * t315 - t356 + (parameters[MX7] * t262
         + parameters[MY7] * t307);
-    const wam7_real_t t358 = parameters[MX5] * (t337 + t338);
+    const wam7_real_t t358 = parameters[MX5] * (t337 + t338); /* link j5: force and moment */
+    /* link j6: what it passes on */
     const wam7_real_t t359 = t358 - parameters[MY5R] * t225 + (t15 * t355 + t13 * t357);
+    /* link j7: what it passes on */
     const wam7_real_t t360 = parameters[MX6] * t314 + parameters[MY6R] * t246 + (t1 * t351 + t2 * t353);
-    const wam7_real_t t361 = parameters[MY5R] * (t346 + t338);
-    const wam7_real_t t362 = parameters[MX5] * t335 + t361 + t360;
-    const wam7_real_t t363 = t32 * t359 + t34 * t362;
-    const wam7_real_t t364 = parameters[ZZ4R] * t233;
+    const wam7_real_t t361 = parameters[MY5R] * (t346 + t338); /* link j5: force and moment */
+    const wam7_real_t t362 = parameters[MX5] * t335 + t361 + t360; /* link j6: what it passes on */
+    const wam7_real_t t363 = t32 * t359 + t34 * t362; /* link j5: what it passes on */
+    const wam7_real_t t364 = parameters[ZZ4R] * t233; /* link j4: force and moment */
     const wam7_real_t t365 = parameters[XY4R] * t293 - (parameters[XX4R] * t234 + t364)
         + parameters[XZ4] * t299;
     const wam7_real_t t366 = parameters[YZ4] * (t272 - t273);
+    /* link j5: what it passes on */
     const wam7_real_t t367 = t365 + t366 - parameters[MY4R] * t296 + (t32 * t349 - t34 * t340
         + WAM7_C(0.3) * t363);
-    const wam7_real_t t368 = parameters[XX5R] * t224;
+    const wam7_real_t t368 = parameters[XX5R] * t224; /* link j5: force and moment */
     const wam7_real_t t369 = parameters[ZZ5R] * t221 - t368 - parameters[YZ5] * t247 + parameters[XZ5] * t236;
     const wam7_real_t t370 = parameters[XY5] * (t346 - t337);
+    /* link j6: what it passes on */
     const wam7_real_t t371 = t369 - t370 + (parameters[MX5] * t320 + parameters[MY5R] * t298) + (t13 * t321
         + t15 * t332);
-    const wam7_real_t t372 = t220 * (parameters[XX4R] - parameters[ZZ4R]);
+    const wam7_real_t t372 = t220 * (parameters[XX4R] - parameters[ZZ4R]); /* link j4: force and moment */
     const wam7_real_t t373 = parameters[XZ4] * (t300 - t273);
     const wam7_real_t t374 = parameters[YZ4] * t231 - (t372 + parameters[XY4R] * t235) - t373
         + parameters[MX4R] * t296;
-    const wam7_real_t t375 = t374 + (t371 + WAM7_C(-0.045) * t363);
-    const wam7_real_t t376 = parameters[ZZ3R] * t214;
+    const wam7_real_t t375 = t374 + (t371 + WAM7_C(-0.045) * t363); /* link j5: what it passes on */
+    const wam7_real_t t376 = parameters[ZZ3R] * t214; /* link j3: force and moment */
     const wam7_real_t t377 = parameters[XX3R] * t215 - t376 - parameters[XY3R] * t285
         + parameters[XZ3] * t294;
     const wam7_real_t t378 = parameters[YZ3] * (t276 - t277);
     const wam7_real_t t379 = parameters[MY3R] * t289;
-    const wam7_real_t t380 = t377 - t378 - t379 - (t73 * t367 - t71 * t375);
-    const wam7_real_t t381 = t34 * t359 - t32 * t362;
+    const wam7_real_t t380 = t377 - t378 - t379 - (t73 * t367 - t71 * t375); /* link j4: what it passes on */
+    const wam7_real_t t381 = t34 * t359 - t32 * t362; /* link j5: what it passes on */
+    /* link j6: what it passes on */
     const wam7_real_t t382 = parameters[MX5] * t334 + parameters[MY5R] * t240 + (t15 * t357 - t13 * t355);
+    /* link j5: what it passes on */
     const wam7_real_t t383 = t32 * t340 + t34 * t349 + (WAM7_C(0.045) * t382 + WAM7_C(0.3) * t381);
-    const wam7_real_t t384 = parameters[XX4R] * t230;
+    const wam7_real_t t384 = parameters[XX4R] * t230; /* link j4: force and moment */
     const wam7_real_t t385 = t384 - parameters[ZZ4R] * t228 - parameters[YZ4] * t217 + parameters[XZ4] * t232;
     const wam7_real_t t386 = parameters[XY4R] * (t272 - t300);
+    /* link j5: what it passes on */
     const wam7_real_t t387 = t385 + t386 + (parameters[MX4R] * t303 + parameters[MY4R] * t291) + t383;
-    const wam7_real_t t388 = parameters[MX4R] * t274;
-    const wam7_real_t t389 = t388 + parameters[MY4R] * t231 + t381;
-    const wam7_real_t t390 = parameters[MY4R] * t301;
-    const wam7_real_t t391 = t390 - parameters[MX4R] * t299 - t382;
-    const wam7_real_t t392 = t227 * (parameters[XX3R] - parameters[ZZ3R]);
-    const wam7_real_t t393 = t203 * t203;
-    const wam7_real_t t394 = parameters[XZ3] * (t393 - t277);
+    const wam7_real_t t388 = parameters[MX4R] * t274; /* link j4: force and moment */
+    const wam7_real_t t389 = t388 + parameters[MY4R] * t231 + t381; /* link j5: what it passes on */
+    const wam7_real_t t390 = parameters[MY4R] * t301; /* link j4: force and moment */
+    const wam7_real_t t391 = t390 - parameters[MX4R] * t299 - t382; /* link j5: what it passes on */
+    const wam7_real_t t392 = t227 * (parameters[XX3R] - parameters[ZZ3R]); /* link j3: force and moment */
+    const wam7_real_t t393 = t203 * t203; /* link j3: motion */
+    const wam7_real_t t394 = parameters[XZ3] * (t393 - t277); /* link j3: force and moment */
     const wam7_real_t t395 = parameters[MX3R] * t289;
     const wam7_real_t t396 = t392 + parameters[XY3R] * t216 + parameters[YZ3] * t207 + t394 + t395;
+    /* link j4: what it passes on */
     const wam7_real_t t397 = t396 + (t387 + WAM7_C(0.045) * (t71 * t389 + t73 * t391));
-    const wam7_real_t t398 = parameters[MX3R] * t278;
+    const wam7_real_t t398 = parameters[MX3R] * t278; /* link j3: force and moment */
+    /* link j4: what it passes on */
     const wam7_real_t t399 = t398 - parameters[MY3R] * t207 + (t73 * t389 - t71 * t391);
+    /* link j5: what it passes on */
     const wam7_real_t t400 = parameters[MX4R] * t293 + parameters[MY4R] * t235 + t363;
-    const wam7_real_t t401 = parameters[MY3R] * (t393 + t277);
-    const wam7_real_t t402 = parameters[MX3R] * t294 + t401 + t400;
+    const wam7_real_t t401 = parameters[MY3R] * (t393 + t277); /* link j3: force and moment */
+    const wam7_real_t t402 = parameters[MX3R] * t294 + t401 + t400; /* link j4: what it passes on */
+    /* link j3: what it passes on */
     const wam7_real_t t403 = t118 * t397 - t115 * t380 + WAM7_C(0.55) * (t118 * t399 + t115 * t402);
-    const wam7_real_t t404 = parameters[ZZ2R] * t210;
+    const wam7_real_t t404 = parameters[ZZ2R] * t210; /* link j2: force and moment */
     const wam7_real_t t405 = parameters[XY2] * (WAM7_C(2.0) * t206) - (parameters[XX2R] * t210 + t404)
         + parameters[XZ2] * t209;
-    const wam7_real_t t406 = t208 * t208;
-    const wam7_real_t t407 = parameters[YZ2] * (t406 - t287);
-    const wam7_real_t t408 = parameters[XY3R] * (t393 - t276);
+    const wam7_real_t t406 = t208 * t208; /* link j2: motion */
+    const wam7_real_t t407 = parameters[YZ2] * (t406 - t287); /* link j2: force and moment */
+    const wam7_real_t t408 = parameters[XY3R] * (t393 - t276); /* link j3: force and moment */
     const wam7_real_t t409 = parameters[XX3R] * t205;
     const wam7_real_t t410 = parameters[ZZ3R] * t206 - t409 - parameters[YZ3] * t226 + parameters[XZ3] * t212;
+    /* link j4: what it passes on */
     const wam7_real_t t411 = t410 - t408 + (parameters[MX3R] * t295 + parameters[MY3R] * t283) + (t71 * t367
         + t73 * t375 + WAM7_C(0.045) * t400);
-    const wam7_real_t t412 = t206 * (parameters[XX2R] - parameters[ZZ2R]);
+    const wam7_real_t t412 = t206 * (parameters[XX2R] - parameters[ZZ2R]); /* link j2: force and moment */
     const wam7_real_t t413 = parameters[XZ2] * (t287 - t286);
+    /* link j3: what it passes on */
     const wam7_real_t t414 = t413 - (t412 + parameters[XY2] * t211 + parameters[YZ2] * t209) + t411;
-    const wam7_real_t t415 = wam7_sign(dq[0]);
+    const wam7_real_t t415 = wam7_sign(dq[0]); /* joint j1: coulomb_friction */
     const wam7_real_t t416 = WAM7_C(42.0) * (parameters[FV1] * (WAM7_C(-42.0) * dq[0])
         - parameters[FC1] * t415) + (t166 * (t405 + t407 + t403) + t168 * t414);
-    const wam7_real_t t417 = wam7_sign(dq[6]);
+    const wam7_real_t t417 = wam7_sign(dq[6]); /* joint j7: coulomb_friction */
     const wam7_real_t t418 = WAM7_C(14.93) * (parameters[FV7] * (WAM7_C(-14.93) * dq[6])
         - parameters[FC7] * t417) + t327;
     const wam7_real_t t419 = WAM7_C(1.00031) * input[6] + t418;
-    const wam7_real_t t420 = wam7_sign(dq[5]);
+    const wam7_real_t t420 = wam7_sign(dq[5]); /* joint j6: coulomb_friction */
     const wam7_real_t t421 = WAM7_C(9.48) * (parameters[FV6] * (WAM7_C(-9.48) * dq[5])
         - parameters[FC6] * t420) + t344;
     const wam7_real_t t422 = WAM7_C(2.23728) * input[5] + t421 - t419 * t5;
     const wam7_real_t t423 = WAM7_C(19.194) * input[0] + t416 + t419 * t194 + t422 * t195;
-    const wam7_real_t t424 = wam7_sign(dq[4]);
+    const wam7_real_t t424 = wam7_sign(dq[4]); /* joint j5: coulomb_friction */
     const wam7_real_t t425 = WAM7_C(9.48) * (parameters[FV5] * (WAM7_C(-9.48) * dq[4])
         - parameters[FC5] * t424) + t371;
     const wam7_real_t t426 = WAM7_C(2.23728) * input[4] + t425 - t419 * t28 + t422 * t21;
-    const wam7_real_t t427 = wam7_sign(dq[3]);
+    const wam7_real_t t427 = wam7_sign(dq[3]); /* joint j4: coulomb_friction */
     const wam7_real_t t428 = WAM7_C(18.0) * (parameters[FV4] * (WAM7_C(-18.0) * dq[3])
         - parameters[FC4] * t427) + t387;
     const wam7_real_t t429 = WAM7_C(8.226) * input[3] + t428 + t419 * t57 + t422 * t56;
     const wam7_real_t t430 = t429 + t426 * t55;
-    const wam7_real_t t431 = wam7_sign(dq[2]);
+    const wam7_real_t t431 = wam7_sign(dq[2]); /* joint j3: coulomb_friction */
     const wam7_real_t t432 = WAM7_C(28.25) * (parameters[FV3] * (WAM7_C(-28.25) * dq[2])
         - parameters[FC3] * t431) + t411;
     const wam7_real_t t433 = WAM7_C(12.910250000000001) * input[2] + t432 - t419 * t107 + t422 * t108;
     const wam7_real_t t434 = t433 + t426 * t109 + t430 * t95;
     const wam7_real_t t435 = t423 + t426 * t196 + t430 * t198 + t434 * t199;
+    /* link j3: what it passes on */
     const wam7_real_t t436 = t118 * t380 + t115 * t397 + WAM7_C(0.55) * (t115 * t399 - t118 * t402);
+    /* link j2: force and moment */
     const wam7_real_t t437 = parameters[XX2R] * t209 + parameters[XY2] * (t406 - t286)
         + (parameters[MX2] * t288 - parameters[MY2R] * t280);
-    const wam7_real_t t438 = wam7_sign(dq[1]);
+    const wam7_real_t t438 = wam7_sign(dq[1]); /* joint j2: coulomb_friction */
     const wam7_real_t t439 = WAM7_C(28.25) * (parameters[FV2] * (WAM7_C(-28.25) * dq[1])
         - parameters[FC2] * t438) + (t437 + t436);
     const wam7_real_t t440 = WAM7_C(12.910250000000001) * input[1] + t439 - t419 * t130 - t422 * t138;
@@ -716,7 +752,7 @@ int wam7_forward_dynamics_derivatives(
     const wam7_real_t t461 = parameters[XX7R] - t460;
     const wam7_real_t t462 = t255 * t461 - parameters[XZ7R] * t260;
     const wam7_real_t t463 = parameters[YZ7R] * t254 - t255 * t460;
-    const wam7_real_t t464 = t2 * (t457 + t459) + t1 * (t462 - t463);
+    const wam7_real_t t464 = t2 * (t457 + t459) + t1 * (t462 - t463); /* link j7: inertia, momentum beyond */
     const wam7_real_t t465 = t2 * t464;
     const wam7_real_t t466 = parameters[XZ6] * t242;
     const wam7_real_t t467 = parameters[XY6] * t243;
@@ -733,156 +769,179 @@ int wam7_forward_dynamics_derivatives(
     const wam7_real_t t478 = t254 * t477 - parameters[YZ7R] * t255;
     const wam7_real_t t479 = parameters[XZ7R] * t255 + t260 * t477;
     const wam7_real_t t480 = t243 * t474 - parameters[YZ6] * t242 + (t1 * t479 - t2 * t478);
+    /* link j6: inertia, momentum beyond */
     const wam7_real_t t481 = t15 * (t468 - t471) + t13 * (t480 - t476);
     const wam7_real_t t482 = t15 * t481;
     const wam7_real_t t483 = parameters[XZ5] * t223;
     const wam7_real_t t484 = parameters[XY5] * t237;
     const wam7_real_t t485 = t483 - t484 + (t471 + t482);
-    const wam7_real_t t486 = t466 + t470 + (t465 - t457);
+    const wam7_real_t t486 = t466 + t470 + (t465 - t457); /* link j7: inertia, momentum beyond */
     const wam7_real_t t487 = parameters[YZ5] * t222;
-    const wam7_real_t t488 = t484 + t487 - t486;
-    const wam7_real_t t489 = t1 * t464;
+    const wam7_real_t t488 = t484 + t487 - t486; /* link j6: inertia, momentum beyond */
+    const wam7_real_t t489 = t1 * t464; /* link j7: inertia, momentum beyond */
     const wam7_real_t t490 = parameters[ZZ6R] + t474;
     const wam7_real_t t491 = t242 * t490 - parameters[YZ6] * t243 + (t463 + t489);
     const wam7_real_t t492 = parameters[XZ6] * t243 + t250 * t490 + (t1 * t472 + t2 * t473);
     const wam7_real_t t493 = WAM7_C(-0.5) * (parameters[XX5R] + parameters[ZZ5R]);
+    /* link j6: inertia, momentum beyond */
     const wam7_real_t t494 = parameters[YZ5] * t223 - t237 * t493 + (t15 * t491 - t13 * t492);
+    /* link j7: inertia, momentum beyond */
     const wam7_real_t t495 = parameters[XY6] * t250 + t242 * t475 - (t489 - t462);
     const wam7_real_t t496 = t1 * t478 + t2 * t479 - (parameters[XY6] * t242 + t250 * t474);
     const wam7_real_t t497 = parameters[XX5R] + t493;
+    /* link j6: inertia, momentum beyond */
     const wam7_real_t t498 = parameters[XZ5] * t222 + t237 * t497 - (t15 * t495 + t13 * t496);
+    /* link j5: inertia, momentum beyond */
     const wam7_real_t t499 = t34 * (t485 - t488) - t32 * (t494 + t498);
     const wam7_real_t t500 = t34 * t499;
     const wam7_real_t t501 = parameters[MY7] * t260 + parameters[MX7] * t254;
-    const wam7_real_t t502 = parameters[MX6] * t243 + t501;
+    const wam7_real_t t502 = parameters[MX6] * t243 + t501; /* link j7: inertia, momentum beyond */
     const wam7_real_t t503 = parameters[MY7] * t255;
     const wam7_real_t t504 = parameters[MX7] * t255;
     const wam7_real_t t505 = parameters[MY6R] * t243 - (t2 * t503 + t1 * t504);
+    /* link j6: inertia, momentum beyond */
     const wam7_real_t t506 = parameters[MY5R] * t237 + (t15 * t505 + t13 * t502);
+    /* link j7: inertia, momentum beyond */
     const wam7_real_t t507 = t1 * t503 - t2 * t504 - (parameters[MY6R] * t250 + parameters[MX6] * t242);
-    const wam7_real_t t508 = parameters[MX5] * t237 + t507;
-    const wam7_real_t t509 = t34 * t506 + t32 * t508;
+    const wam7_real_t t508 = parameters[MX5] * t237 + t507; /* link j6: inertia, momentum beyond */
+    const wam7_real_t t509 = t34 * t506 + t32 * t508; /* link j5: inertia, momentum beyond */
     const wam7_real_t t510 = WAM7_C(0.045) * t509;
-    const wam7_real_t t511 = WAM7_C(0.3) * t219;
-    const wam7_real_t t512 = t62 * t511;
+    const wam7_real_t t511 = WAM7_C(0.3) * t219; /* link j5: velocity of its origin */
+    const wam7_real_t t512 = t62 * t511; /* link j5: inertia, momentum beyond */
+    /* link j6: inertia, momentum beyond */
     const wam7_real_t t513 = t13 * t505 - t15 * t502 - (parameters[MY5R] * t222 + parameters[MX5] * t223);
-    const wam7_real_t t514 = WAM7_C(0.3) * t513;
-    const wam7_real_t t515 = WAM7_C(-0.045) * t219;
-    const wam7_real_t t516 = t49 * t515;
-    const wam7_real_t t517 = WAM7_C(0.3) * t218 + WAM7_C(-0.045) * t229;
-    const wam7_real_t t518 = t41 * t517;
+    const wam7_real_t t514 = WAM7_C(0.3) * t513; /* link j5: inertia, momentum beyond */
+    const wam7_real_t t515 = WAM7_C(-0.045) * t219; /* link j5: velocity of its origin */
+    const wam7_real_t t516 = t49 * t515; /* link j5: inertia, momentum beyond */
+    const wam7_real_t t517 = WAM7_C(0.3) * t218 + WAM7_C(-0.045) * t229; /* link j5: velocity of its origin */
+    const wam7_real_t t518 = t41 * t517; /* link j5: inertia, momentum beyond */
     const wam7_real_t t519 = t510 + t514 + (t516 - t512 - t518);
     const wam7_real_t t520 = parameters[XZ4] * t229;
     const wam7_real_t t521 = parameters[XY4R] * t219;
     const wam7_real_t t522 = t519 + (t488 + t500 + (t512 - t510)) - (t520 + t521);
-    const wam7_real_t t523 = t483 + t487 + (t482 - t468);
+    const wam7_real_t t523 = t483 + t487 + (t482 - t468); /* link j6: inertia, momentum beyond */
     const wam7_real_t t524 = parameters[YZ4] * t218;
+    /* link j5: inertia, momentum beyond */
     const wam7_real_t t525 = t521 + t524 + (t519 - (t523 + (t514 + t516)));
-    const wam7_real_t t526 = t13 * t481;
+    const wam7_real_t t526 = t13 * t481; /* link j6: inertia, momentum beyond */
     const wam7_real_t t527 = parameters[XY5] * t222 + t223 * t497 + (t476 + t526);
     const wam7_real_t t528 = parameters[XY5] * t223 + t222 * t493 + (t13 * t491 + t15 * t492);
+    /* link j5: inertia, momentum beyond */
     const wam7_real_t t529 = t34 * t527 - t32 * t528 + (WAM7_C(-0.045) * t513 + t62 * t515);
     const wam7_real_t t530 = WAM7_C(-0.5) * (parameters[XX4R] + parameters[ZZ4R]);
     const wam7_real_t t531 = parameters[XX4R] + t530;
     const wam7_real_t t532 = parameters[XZ4] * t218 + t219 * t531 + t529;
     const wam7_real_t t533 = parameters[ZZ5R] + t493;
+    /* link j6: inertia, momentum beyond */
     const wam7_real_t t534 = t223 * t533 - parameters[YZ5] * t237 + (t480 - t526);
     const wam7_real_t t535 = t15 * t496 - t13 * t495 - (parameters[XZ5] * t237 + t222 * t533);
+    /* link j5: inertia, momentum beyond */
     const wam7_real_t t536 = t34 * t534 + t32 * t535 + (WAM7_C(0.3) * t509 + t49 * t511);
     const wam7_real_t t537 = parameters[YZ4] * t229 + t219 * t530 + t536;
+    /* link j4: inertia, momentum beyond */
     const wam7_real_t t538 = t73 * (t522 - t525) + t71 * (t537 - t532);
     const wam7_real_t t539 = t73 * t538;
-    const wam7_real_t t540 = parameters[MY4R] * t219 + t509;
+    const wam7_real_t t540 = parameters[MY4R] * t219 + t509; /* link j5: inertia, momentum beyond */
     const wam7_real_t t541 = t513 - parameters[MX4R] * t219;
-    const wam7_real_t t542 = t73 * t540 - t71 * t541;
+    const wam7_real_t t542 = t73 * t540 - t71 * t541; /* link j4: inertia, momentum beyond */
     const wam7_real_t t543 = WAM7_C(0.045) * t542;
-    const wam7_real_t t544 = WAM7_C(-0.045) * t213;
-    const wam7_real_t t545 = t41 * t544;
-    const wam7_real_t t546 = WAM7_C(0.045) * t204;
-    const wam7_real_t t547 = t121 * t546;
+    const wam7_real_t t544 = WAM7_C(-0.045) * t213; /* link j4: velocity of its origin */
+    const wam7_real_t t545 = t41 * t544; /* link j4: inertia, momentum beyond */
+    const wam7_real_t t546 = WAM7_C(0.045) * t204; /* link j4: velocity of its origin */
+    const wam7_real_t t547 = t121 * t546; /* link j4: inertia, momentum beyond */
     const wam7_real_t t548 = t543 - (t545 + t547);
     const wam7_real_t t549 = parameters[XZ3] * t204;
     const wam7_real_t t550 = parameters[XY3R] * t213;
     const wam7_real_t t551 = t549 - t550 + (t525 + t539 + t543 - t548);
+    /* link j5: inertia, momentum beyond */
     const wam7_real_t t552 = t520 - t524 + (t519 + (t485 - t500 + t518));
     const wam7_real_t t553 = parameters[YZ3] * t203;
-    const wam7_real_t t554 = t550 + t553 - (t548 + (t545 - t552));
-    const wam7_real_t t555 = t32 * t499;
+    const wam7_real_t t554 = t550 + t553 - (t548 + (t545 - t552)); /* link j4: inertia, momentum beyond */
+    const wam7_real_t t555 = t32 * t499; /* link j5: inertia, momentum beyond */
     const wam7_real_t t556 = parameters[ZZ4R] + t530;
     const wam7_real_t t557 = t494 + t555 + t41 * t511 - (parameters[YZ4] * t219 + t229 * t556);
     const wam7_real_t t558 = parameters[XZ4] * t219 + t218 * t556 + (t32 * t527 + t34 * t528 + t41 * t515);
     const wam7_real_t t559 = WAM7_C(-0.5) * (parameters[XX3R] + parameters[ZZ3R]);
+    /* link j4: inertia, momentum beyond */
     const wam7_real_t t560 = parameters[YZ3] * t204 - t213 * t559 + (t73 * t557 - t71 * t558);
-    const wam7_real_t t561 = t34 * t508 - t32 * t506;
+    const wam7_real_t t561 = t34 * t508 - t32 * t506; /* link j5: inertia, momentum beyond */
     const wam7_real_t t562 = t229 * t531 - parameters[XY4R] * t218 + (t498 + t555 + (WAM7_C(0.045) * t561
         + t62 * t517));
     const wam7_real_t t563 = t34 * t535 - t32 * t534 - (WAM7_C(-0.3) * t561 + t49 * t517);
     const wam7_real_t t564 = t218 * t530 - parameters[XY4R] * t229 - t563;
     const wam7_real_t t565 = parameters[MX4R] * t229 - parameters[MY4R] * t218 + t561;
+    /* link j4: inertia, momentum beyond */
     const wam7_real_t t566 = t73 * t562 + t71 * t564 + (WAM7_C(-0.045) * t565 + t103 * t544);
     const wam7_real_t t567 = parameters[XX3R] + t559;
     const wam7_real_t t568 = parameters[XZ3] * t203 + t213 * t567 + t566;
+    /* link j3: inertia, momentum beyond */
     const wam7_real_t t569 = t115 * (t554 - t551) + t118 * (t560 + t568);
     const wam7_real_t t570 = t118 * t569;
-    const wam7_real_t t571 = WAM7_C(-0.55) * t202;
+    const wam7_real_t t571 = WAM7_C(-0.55) * t202; /* link j3: velocity of its origin */
     const wam7_real_t t572 = WAM7_C(0.5) * (parameters[XX2R] + parameters[ZZ2R]);
     const wam7_real_t t573 = t572 - parameters[XX2R];
+    /* link j3: inertia, momentum beyond */
     const wam7_real_t t574 = parameters[XY2] * t202 + t208 * t573 + (t570 - t568 - t183 * t571);
-    const wam7_real_t t575 = WAM7_C(2.0) * t574;
-    const wam7_real_t t576 = t71 * t538;
+    const wam7_real_t t575 = WAM7_C(2.0) * t574; /* link j2: derivatives */
+    const wam7_real_t t576 = t71 * t538; /* link j4: inertia, momentum beyond */
     const wam7_real_t t577 = parameters[ZZ3R] + t559;
     const wam7_real_t t578 = t204 * t577 - parameters[YZ3] * t213 + (t537 - t576);
     const wam7_real_t t579 = t71 * t562 - t73 * t564 + t121 * t544 - (parameters[XZ3] * t213 + t203 * t577);
     const wam7_real_t t580 = parameters[MY3R] * t213 + t542;
     const wam7_real_t t581 = parameters[MX3R] * t213 + t565;
+    /* link j3: inertia, momentum beyond */
     const wam7_real_t t582 = WAM7_C(0.55) * (t118 * t580 - t115 * t581) - t121 * t571;
     const wam7_real_t t583 = parameters[XY2] * t208 + t202 * t572 + (t115 * t579 - t118 * t578 - t582);
-    const wam7_real_t t584 = WAM7_C(2.0) * t583;
+    const wam7_real_t t584 = WAM7_C(2.0) * t583; /* link j2: derivatives */
     const wam7_real_t t585 = WAM7_C(0.07745783389167521) * (t166 * t575 - t168 * t584);
     const wam7_real_t t586 = wam7_bounded(WAM7_C(19.194) * t442);
-    const wam7_real_t t587 = t115 * t569;
-    const wam7_real_t t588 = WAM7_C(0.55) * dq[1];
-    const wam7_real_t t589 = t183 * t588;
-    const wam7_real_t t590 = t71 * t540 + t73 * t541;
+    const wam7_real_t t587 = t115 * t569; /* link j3: inertia, momentum beyond */
+    const wam7_real_t t588 = WAM7_C(0.55) * dq[1]; /* link j3: velocity of its origin */
+    const wam7_real_t t589 = t183 * t588; /* link j3: inertia, momentum beyond */
+    const wam7_real_t t590 = t71 * t540 + t73 * t541; /* link j4: inertia, momentum beyond */
     const wam7_real_t t591 = t590 - (parameters[MY3R] * t203 + parameters[MX3R] * t204);
-    const wam7_real_t t592 = WAM7_C(-0.55) * t591;
+    const wam7_real_t t592 = WAM7_C(-0.55) * t591; /* link j3: inertia, momentum beyond */
     const wam7_real_t t593 = t157 * t571;
     const wam7_real_t t594 = t592 - (t589 + t593);
     const wam7_real_t t595 = parameters[XZ2] * t208;
     const wam7_real_t t596 = parameters[XY2] * dq[1];
     const wam7_real_t t597 = t595 + t596 + (t594 + (t587 - t554 + t589));
+    /* link j4: inertia, momentum beyond */
     const wam7_real_t t598 = t549 + t553 + (t548 + (t539 - t522 + t547));
     const wam7_real_t t599 = parameters[YZ2] * t202;
-    const wam7_real_t t600 = t594 + (t598 - t592) - (t596 + t599);
+    const wam7_real_t t600 = t594 + (t598 - t592) - (t596 + t599); /* link j3: inertia, momentum beyond */
+    /* link j4: inertia, momentum beyond */
     const wam7_real_t t601 = parameters[XY3R] * t203 + t204 * t567 + (t532 + t576 + (WAM7_C(0.045) * t590
         - t103 * t546));
     const wam7_real_t t602 = parameters[XY3R] * t204 + t203 * t559 + (t71 * t557 + t73 * t558 + t41 * t546);
+    /* link j3: inertia, momentum beyond */
     const wam7_real_t t603 = dq[1] * t573 - parameters[XZ2] * t202 + (t118 * t602 - t115 * t601);
     const wam7_real_t t604 = WAM7_C(0.55) * (t115 * t580 + t118 * t581) + t121 * t588;
     const wam7_real_t t605 = parameters[YZ2] * t208 - dq[1] * t572 + (t115 * t578 + t118 * t579 + t604);
+    /* link j2: inertia, momentum beyond */
     const wam7_real_t t606 = t168 * (t168 * (t600 - t597) + t166 * (t605 + t603));
     const wam7_real_t t607 = WAM7_C(-91.90371991247264) * parameters[FV1]
         + WAM7_C(0.10419922892570596) * (t597 + t606);
     const wam7_real_t t608 = t442 * (t199 + t162 * t189);
     const wam7_real_t t609 = wam7_bounded(WAM7_C(12.910250000000001) * t608);
-    const wam7_real_t t610 = WAM7_C(2.0) * t601;
+    const wam7_real_t t610 = WAM7_C(2.0) * t601; /* link j3: derivatives */
     const wam7_real_t t611 = WAM7_C(2.0) * t602;
     const wam7_real_t t612 = t118 * t611 - t115 * t610;
     const wam7_real_t t613 = WAM7_C(2.0) * t598;
-    const wam7_real_t t614 = WAM7_C(1.1) * t202;
+    const wam7_real_t t614 = WAM7_C(1.1) * t202; /* link j7: derivatives */
     const wam7_real_t t615 = WAM7_C(1.1) * dq[1];
-    const wam7_real_t t616 = t613 - (t183 * t615 - t157 * t614);
+    const wam7_real_t t616 = t613 - (t183 * t615 - t157 * t614); /* link j3: derivatives */
     const wam7_real_t t617 = WAM7_C(0.07745783389167521) * (t166 * t612 + t168 * t616);
     const wam7_real_t t618 = t152 - t95 * t162;
     const wam7_real_t t619 = t442 * (t198 + t95 * t199 - t189 * t618);
     const wam7_real_t t620 = wam7_bounded(WAM7_C(8.226) * t619);
-    const wam7_real_t t621 = WAM7_C(2.0) * t562;
+    const wam7_real_t t621 = WAM7_C(2.0) * t562; /* link j4: derivatives */
     const wam7_real_t t622 = WAM7_C(2.0) * t564;
-    const wam7_real_t t623 = WAM7_C(-0.09) * t213;
-    const wam7_real_t t624 = t73 * t621 + t71 * t622 + t103 * t623;
+    const wam7_real_t t623 = WAM7_C(-0.09) * t213; /* link j7: derivatives */
+    const wam7_real_t t624 = t73 * t621 + t71 * t622 + t103 * t623; /* link j4: derivatives */
     const wam7_real_t t625 = WAM7_C(2.0) * t552;
-    const wam7_real_t t626 = WAM7_C(0.09) * t204;
-    const wam7_real_t t627 = t625 + t121 * t626;
+    const wam7_real_t t626 = WAM7_C(0.09) * t204; /* link j7: derivatives */
+    const wam7_real_t t627 = t625 + t121 * t626; /* link j4: derivatives */
     const wam7_real_t t628 = t118 * t627 - t115 * t624 + t103 * t614;
     const wam7_real_t t629 = t73 * t622 - t71 * t621 - t121 * t623;
     const wam7_real_t t630 = t629 + (t149 * t614 - t179 * t615);
@@ -893,14 +952,14 @@ int wam7_forward_dynamics_derivatives(
     const wam7_real_t t635 = t196 + t55 * t198 + t199 * t633 + t189 * t634;
     const wam7_real_t t636 = t442 * t635;
     const wam7_real_t t637 = wam7_bounded(WAM7_C(2.23728) * t636);
-    const wam7_real_t t638 = WAM7_C(2.0) * t527;
+    const wam7_real_t t638 = WAM7_C(2.0) * t527; /* link j5: derivatives */
     const wam7_real_t t639 = WAM7_C(2.0) * t528;
-    const wam7_real_t t640 = WAM7_C(0.09) * t219;
-    const wam7_real_t t641 = t34 * t638 - t32 * t639 - t62 * t640;
+    const wam7_real_t t640 = WAM7_C(0.09) * t219; /* link j7: derivatives */
+    const wam7_real_t t641 = t34 * t638 - t32 * t639 - t62 * t640; /* link j5: derivatives */
     const wam7_real_t t642 = WAM7_C(2.0) * t523;
-    const wam7_real_t t643 = WAM7_C(-2.0) * t517;
+    const wam7_real_t t643 = WAM7_C(-2.0) * t517; /* link j7: derivatives */
     const wam7_real_t t644 = WAM7_C(0.6) * t219;
-    const wam7_real_t t645 = t642 + (t62 * t644 - t41 * t643);
+    const wam7_real_t t645 = t642 + (t62 * t644 - t41 * t643); /* link j5: derivatives */
     const wam7_real_t t646 = t73 * t641 + t71 * t645 + (t62 * t626 - t140 * t623);
     const wam7_real_t t647 = t32 * t638 + t34 * t639 - t41 * t640;
     const wam7_real_t t648 = t647 + t142 * t626;
@@ -914,7 +973,7 @@ int wam7_forward_dynamics_derivatives(
     const wam7_real_t t656 = t195 + t21 * t196 + t198 * t653 + t199 * t654;
     const wam7_real_t t657 = t442 * (t656 + t189 * t655);
     const wam7_real_t t658 = wam7_bounded(WAM7_C(2.23728) * t657);
-    const wam7_real_t t659 = WAM7_C(2.0) * t495;
+    const wam7_real_t t659 = WAM7_C(2.0) * t495; /* link j6: derivatives */
     const wam7_real_t t660 = WAM7_C(2.0) * t496;
     const wam7_real_t t661 = t15 * t659 + t13 * t660;
     const wam7_real_t t662 = WAM7_C(2.0) * t486;
@@ -936,7 +995,7 @@ int wam7_forward_dynamics_derivatives(
     const wam7_real_t t678 = t194 - t5 * t195 - t196 * t673 + t198 * t674;
     const wam7_real_t t679 = t442 * (t678 + t199 * t675 + t189 * t677);
     const wam7_real_t t680 = WAM7_C(1.00031) * t679;
-    const wam7_real_t t681 = WAM7_C(2.0) * t472;
+    const wam7_real_t t681 = WAM7_C(2.0) * t472; /* link j7: derivatives */
     const wam7_real_t t682 = WAM7_C(2.0) * t473;
     const wam7_real_t t683 = t2 * t681 - t1 * t682;
     const wam7_real_t t684 = WAM7_C(2.0) * t469;
@@ -1170,11 +1229,11 @@ int wam7_forward_dynamics_derivatives(
     const wam7_real_t t884 = parameters[XY2] * (t206 + t782) - (t404 + parameters[XX2R] * t775)
         + parameters[XZ2] * (t209 + t444);
     const wam7_real_t t885 = t105 * t774;
-    const wam7_real_t t886 = t286 + t406;
-    const wam7_real_t t887 = WAM7_C(-2.0) * t208;
+    const wam7_real_t t886 = t286 + t406; /* link j3: motion */
+    const wam7_real_t t887 = WAM7_C(-2.0) * t208; /* link j2: derivatives */
     const wam7_real_t t888 = WAM7_C(2.0) * t202;
     const wam7_real_t t889 = t885 - t191 * t781 - t167 * t886 - (t603 * t887 + t600 * t888);
-    const wam7_real_t t890 = t157 * t288;
+    const wam7_real_t t890 = t157 * t288; /* link j3: derivatives */
     const wam7_real_t t891 = t409 + parameters[ZZ3R] * t783 - parameters[YZ3] * t777 - parameters[XZ3] * t785;
     const wam7_real_t t892 = t408 + t891 + (parameters[MX3R] * t823 + parameters[MY3R] * t816) + (t73 * t868
         - t71 * t864 + WAM7_C(-0.045) * t881);
@@ -1217,27 +1276,37 @@ int wam7_forward_dynamics_derivatives(
     const wam7_real_t t922 = t762 * t896 - t763 * t899 + t764 * t901 - t765 * t903;
     const wam7_real_t t923 = t922 + t767 * t906 + t768 * t908 + t771 * t910;
     ddq_by_q[43] = t923;
+    /* link j2: derivatives */
     const wam7_real_t t924 = WAM7_C(2.0) * (t595 - t599 + (t551 + t587 - t593 - t594));
     const wam7_real_t t925 = WAM7_C(0.07745783389167521) * (t924 + WAM7_C(2.0) * (t165 * t208 + t167 * t202));
     const wam7_real_t t926 = WAM7_C(61.81619256017505) * parameters[FV2] + t925;
     const wam7_real_t t927 = parameters[ZZ2R] - t572;
+    /* link j3: inertia, momentum beyond */
     const wam7_real_t t928 = t560 - t570 + t157 * t588 - (parameters[YZ2] * dq[1] + t208 * t927);
+    /* link j2: derivatives */
     const wam7_real_t t929 = t166 * (WAM7_C(2.0) * t928 + (t191 * t888 - t190 * t887));
+    /* link j3: inertia, momentum beyond */
     const wam7_real_t t930 = parameters[XZ2] * dq[1] + t202 * t927 + (t118 * t601 + t115 * t602);
+    /* link j2: derivatives */
     const wam7_real_t t931 = t168 * (WAM7_C(2.0) * t930 + (t191 * t887 + t105 * t888));
     const wam7_real_t t932 = WAM7_C(0.05209961446285298) * (t929 + t931);
+    /* link j3: derivatives */
     const wam7_real_t t933 = t118 * t610 + t115 * t611 + WAM7_C(2.0) * (t184 * t208 + t105 * t202);
     const wam7_real_t t934 = WAM7_C(0.07745783389167521) * t933;
+    /* link j4: derivatives */
     const wam7_real_t t935 = t118 * t624 + t115 * t627 + t103 * t615 + WAM7_C(2.0) * (t180 * t208
         + t74 * t202);
     const wam7_real_t t936 = WAM7_C(0.12156576707999026) * t935;
     const wam7_real_t t937 = t932 * t586 - t926 * t454 + t934 * t609 - t936 * t620;
+    /* link j5: derivatives */
     const wam7_real_t t938 = t118 * t646 + t115 * t648 - t140 * t615 + WAM7_C(2.0) * (t177 * t208
         + t91 * t202);
     const wam7_real_t t939 = WAM7_C(0.4469713223199599) * t938;
+    /* link j6: derivatives */
     const wam7_real_t t940 = t118 * t666 + t115 * t668 + t132 * t615 + WAM7_C(2.0) * (t173 * t208
         + t84 * t202);
     const wam7_real_t t941 = WAM7_C(0.4469713223199599) * t940;
+    /* link j7: derivatives */
     const wam7_real_t t942 = t118 * t690 + t115 * t692 + t125 * t615 + WAM7_C(2.0) * (t170 * t208
         + t79 * t202);
     const wam7_real_t t943 = WAM7_C(0.9996900960702182) * t942;
@@ -1268,8 +1337,8 @@ int wam7_forward_dynamics_derivatives(
     ddq_by_input[29] = t738;
     ddq_by_input[36] = t752;
     ddq_by_input[43] = t763;
-    const wam7_real_t t957 = t393 + t276;
-    const wam7_real_t t958 = WAM7_C(2.0) * t204;
+    const wam7_real_t t957 = t393 + t276; /* link j4: motion */
+    const wam7_real_t t958 = WAM7_C(2.0) * t204; /* link j3: derivatives */
     const wam7_real_t t959 = WAM7_C(2.0) * t203;
     const wam7_real_t t960 = t551 * t958 + t560 * t959 + (t113 * t777 + t117 * t785 - t153 * t957);
     const wam7_real_t t961 = t879 + (t960 + t121 * t816);
@@ -1360,8 +1429,8 @@ int wam7_forward_dynamics_derivatives(
     ddq_by_input[30] = t739;
     ddq_by_input[37] = t753;
     ddq_by_input[44] = t764;
-    const wam7_real_t t1026 = t300 + t272;
-    const wam7_real_t t1027 = WAM7_C(-2.0) * t229;
+    const wam7_real_t t1026 = t300 + t272; /* link j5: motion */
+    const wam7_real_t t1027 = WAM7_C(-2.0) * t229; /* link j4: derivatives */
     const wam7_real_t t1028 = WAM7_C(2.0) * t218;
     const wam7_real_t t1029 = t522 * t1027 - t537 * t1028 + (t98 * t788 - t97 * t795 - t70 * t1026);
     const wam7_real_t t1030 = t868 + (t1029 + t41 * t820);
@@ -1461,8 +1530,8 @@ int wam7_forward_dynamics_derivatives(
     ddq_by_input[45] = t765;
     const wam7_real_t t1102 = t49 * t839;
     const wam7_real_t t1103 = t8 * t799;
-    const wam7_real_t t1104 = t346 + t337;
-    const wam7_real_t t1105 = WAM7_C(2.0) * t223;
+    const wam7_real_t t1104 = t346 + t337; /* link j6: motion */
+    const wam7_real_t t1105 = WAM7_C(2.0) * t223; /* link j5: derivatives */
     const wam7_real_t t1106 = WAM7_C(2.0) * t222;
     const wam7_real_t t1107 = t498 * t1105 + t488 * t1106 - (t33 * t1104 + (t1103 - t59 * t791));
     const wam7_real_t t1108 = t850 + (t1102 - t1107);
@@ -1568,8 +1637,8 @@ int wam7_forward_dynamics_derivatives(
     ddq_by_input[32] = t743;
     ddq_by_input[39] = t746;
     ddq_by_input[46] = t767;
-    const wam7_real_t t1190 = t329 + t317;
-    const wam7_real_t t1191 = WAM7_C(2.0) * t242;
+    const wam7_real_t t1190 = t329 + t317; /* link j7: motion */
+    const wam7_real_t t1191 = WAM7_C(2.0) * t242; /* link j6: derivatives */
     const wam7_real_t t1192 = WAM7_C(2.0) * t250;
     const wam7_real_t t1193 = t468 * t1191 - t480 * t1192 + (t12 * t1190 + (t23 * t802 - t22 * t809));
     const wam7_real_t t1194 = t846 + (t1193 + t35 * t842);
@@ -1687,8 +1756,8 @@ int wam7_forward_dynamics_derivatives(
     ddq_by_input[33] = t746;
     ddq_by_input[40] = t757;
     ddq_by_input[47] = t768;
-    const wam7_real_t t1287 = t310 + t269;
-    const wam7_real_t t1288 = WAM7_C(2.0) * t254;
+    const wam7_real_t t1287 = t310 + t269; /* link j7: force and moment */
+    const wam7_real_t t1288 = WAM7_C(2.0) * t254; /* link j7: derivatives */
     const wam7_real_t t1289 = WAM7_C(2.0) * t260;
     const wam7_real_t t1290 = t457 * t1288 + t463 * t1289 - (parameters[XZ7R] * t1287
         - (parameters[XX7R] * t807 - parameters[XY7] * t805));

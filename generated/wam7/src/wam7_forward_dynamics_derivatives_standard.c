@@ -7,7 +7,7 @@
  * Arm wam7, description 552353c9ea1f05cf.
  * SPDX-License-Identifier: 0BSD
  *
- * Operations: 5486 (2991 mul, 2495 add, 0 neg), 7 div, 12 trig, 7 other.
+ * Operations: 5486 (2991 mul, 2495 add, 0 neg), 7 div, 12 trig, 7 other calls (sign, select and the like).
  *
  * @param[in]   q             [7]   [rad]                    joint coordinates; norm at most 10000
  * @param[in]   dq            [7]   [rad/s]                  joint velocities; norm at most 100000
@@ -15,9 +15,9 @@
  *                                                           norm at most 1e+09
  * @param[in]   parameters    [91]                           standard parameters; norm at most 1e+09
  * @param[out]  ddq           [7]   [rad/s^2]                joint accelerations
- * @param[out]  ddq_by_q      [49]  [(rad/s^2) per (rad)]    d ddq / d q; 7 x 7, row-major
+ * @param[out]  ddq_by_q      [49]  [(rad/s^2) per rad]      d ddq / d q; 7 x 7, row-major
  * @param[out]  ddq_by_dq     [49]  [(rad/s^2) per (rad/s)]  d ddq / d dq; 7 x 7, row-major
- * @param[out]  ddq_by_input  [49]  [(rad/s^2) per (A)]      d ddq / d input; 7 x 7, row-major
+ * @param[out]  ddq_by_input  [49]  [(rad/s^2) per A]        d ddq / d input; 7 x 7, row-major
  *
  * Coordinates:
  *
@@ -125,11 +125,11 @@
  */
 #include "wam7_private.h"
 
-#if WAM7_GENERATION != 0x7A21915FUL
+#if WAM7_GENERATION != 0x0E2B7B26UL
 #error "wam7.h and wam7_forward_dynamics_derivatives_standard.c are of different generations: generate the arm again"
 #endif
 
-int wam7_forward_dynamics_derivatives_standard(
+wam7_status_t wam7_forward_dynamics_derivatives_standard(
     const wam7_real_t q[WAM7_N_JOINTS],
     const wam7_real_t dq[WAM7_N_JOINTS],
     const wam7_real_t input[WAM7_N_JOINTS],
@@ -144,7 +144,7 @@ int wam7_forward_dynamics_derivatives_standard(
         XX5, XY5, XZ5, YY5, YZ5, ZZ5, MX5, MY5, MZ5, M5, XX6, XY6, XZ6, YY6, YZ6, ZZ6, MX6, MY6, MZ6, M6, XX7,
         XY7, XZ7, YY7, YZ7, ZZ7, MX7, MY7, MZ7, M7, FV1, FC1, IA1, FV2, FC2, IA2, FV3, FC3, IA3, FV4, FC4,
         IA4, FV5, FC5, IA5, FV6, FC6, IA6, FV7, FC7, IA7 };
-    int status = WAM7_STATUS_OK;
+    wam7_status_t status = WAM7_STATUS_OK;
 
     if (!wam7_within_joints(q, WAM7_C(1.0e8))
         || !wam7_within_joints(dq, WAM7_C(1.0e10))
@@ -180,11 +180,12 @@ int wam7_forward_dynamics_derivatives_standard(
         wam7_zero(ddq_by_input, 49);
         return WAM7_STATUS_PIVOT;
     }
+    /* link j7: column of the mass matrix */
     const wam7_real_t t3 = t2 * parameters[MY7] + t1 * parameters[MX7];
     const wam7_real_t t4 = t1 * parameters[XZ7] + t2 * parameters[YZ7] - WAM7_C(0.06) * t3;
     const wam7_real_t t5 = WAM7_C(1.0) / t0;
     const wam7_real_t t6 = t4 * t5;
-    const wam7_real_t t7 = parameters[YY7] - parameters[XX7];
+    const wam7_real_t t7 = parameters[YY7] - parameters[XX7]; /* link j7: inertia of it and all beyond */
     const wam7_real_t t8 = t2 * t7 + parameters[XY7] * (WAM7_C(2.0) * t1);
     const wam7_real_t t9 = t2 * t8;
     const wam7_real_t t10 = WAM7_C(0.06) * parameters[M7];
@@ -209,18 +210,20 @@ int wam7_forward_dynamics_derivatives_standard(
     }
     const wam7_real_t t16 = parameters[XX6] + (parameters[YY7] - t9 + t11);
     const wam7_real_t t17 = parameters[YY6] + parameters[ZZ7];
+    /* link j7: column of the mass matrix */
     const wam7_real_t t19 = t1 * parameters[MY7] - t2 * parameters[MX7];
     const wam7_real_t t20 = t1 * parameters[YZ7] - t2 * parameters[XZ7] + WAM7_C(-0.06) * t19;
-    const wam7_real_t t21 = parameters[XY6] + t20;
+    const wam7_real_t t21 = parameters[XY6] + t20; /* link j7: inertia of it and all beyond */
+    /* link j6: inertia of it and all beyond */
     const wam7_real_t t23 = t18 * (t16 - t17) + t21 * (WAM7_C(-2.0) * t22);
     const wam7_real_t t24 = t18 * t23;
     const wam7_real_t t25 = parameters[ZZ5] + (t16 - t24);
     const wam7_real_t t26 = t25 + WAM7_C(89.8704) * parameters[IA5];
-    const wam7_real_t t27 = t22 * t20 + t18 * parameters[ZZ7];
+    const wam7_real_t t27 = t22 * t20 + t18 * parameters[ZZ7]; /* link j7: column of the mass matrix */
     const wam7_real_t t28 = t27 * t5;
-    const wam7_real_t t29 = t4 - parameters[YZ6];
+    const wam7_real_t t29 = t4 - parameters[YZ6]; /* link j7: inertia of it and all beyond */
     const wam7_real_t t30 = t1 * t8 - parameters[XY7] - parameters[XZ6];
-    const wam7_real_t t31 = t22 * t30 + t18 * t29;
+    const wam7_real_t t31 = t22 * t30 + t18 * t29; /* link j6: column of the mass matrix */
     const wam7_real_t t32 = t27 * t6 - t31;
     const wam7_real_t t33 = WAM7_C(1.0) / t14;
     const wam7_real_t t34 = t32 * t33;
@@ -240,43 +243,44 @@ int wam7_forward_dynamics_derivatives_standard(
         wam7_zero(ddq_by_input, 49);
         return WAM7_STATUS_PIVOT;
     }
-    const wam7_real_t t37 = parameters[XX5] + (t17 + t24);
+    const wam7_real_t t37 = parameters[XX5] + (t17 + t24); /* link j6: inertia of it and all beyond */
     const wam7_real_t t38 = parameters[YY5] + t12;
-    const wam7_real_t t40 = t18 * t30 - t22 * t29;
-    const wam7_real_t t41 = parameters[XY5] - t40;
+    const wam7_real_t t40 = t18 * t30 - t22 * t29; /* link j6: column of the mass matrix */
+    const wam7_real_t t41 = parameters[XY5] - t40; /* link j6: inertia of it and all beyond */
+    /* link j5: inertia of it and all beyond */
     const wam7_real_t t43 = t39 * (t38 - t37) + t41 * (WAM7_C(2.0) * t42);
     const wam7_real_t t44 = t39 * t43;
-    const wam7_real_t t45 = parameters[MZ6] + t3;
-    const wam7_real_t t46 = parameters[MY5] + t45;
-    const wam7_real_t t47 = parameters[MX6] - t19;
+    const wam7_real_t t45 = parameters[MZ6] + t3; /* link j7: inertia of it and all beyond */
+    const wam7_real_t t46 = parameters[MY5] + t45; /* link j6: inertia of it and all beyond */
+    const wam7_real_t t47 = parameters[MX6] - t19; /* link j7: inertia of it and all beyond */
     const wam7_real_t t48 = parameters[MZ7] + t10;
     const wam7_real_t t49 = parameters[MY6] - t48;
-    const wam7_real_t t50 = t22 * t49 - t18 * t47;
-    const wam7_real_t t51 = t50 - parameters[MX5];
-    const wam7_real_t t52 = t42 * t46 + t39 * t51;
-    const wam7_real_t t53 = parameters[M6] + parameters[M7];
-    const wam7_real_t t54 = parameters[M5] + t53;
-    const wam7_real_t t55 = WAM7_C(0.045) * t54;
+    const wam7_real_t t50 = t22 * t49 - t18 * t47; /* link j6: column of the mass matrix */
+    const wam7_real_t t51 = t50 - parameters[MX5]; /* link j6: inertia of it and all beyond */
+    const wam7_real_t t52 = t42 * t46 + t39 * t51; /* link j5: column of the mass matrix */
+    const wam7_real_t t53 = parameters[M6] + parameters[M7]; /* link j7: inertia of it and all beyond */
+    const wam7_real_t t54 = parameters[M5] + t53; /* link j6: inertia of it and all beyond */
+    const wam7_real_t t55 = WAM7_C(0.045) * t54; /* link j5: inertia of it and all beyond */
     const wam7_real_t t56 = WAM7_C(0.045) * (t55 + WAM7_C(2.0) * t52);
-    const wam7_real_t t57 = t18 * t49 + t22 * t47;
-    const wam7_real_t t58 = parameters[MZ5] - t57;
-    const wam7_real_t t59 = WAM7_C(0.3) * t54;
+    const wam7_real_t t57 = t18 * t49 + t22 * t47; /* link j6: column of the mass matrix */
+    const wam7_real_t t58 = parameters[MZ5] - t57; /* link j6: inertia of it and all beyond */
+    const wam7_real_t t59 = WAM7_C(0.3) * t54; /* link j5: inertia of it and all beyond */
     const wam7_real_t t60 = WAM7_C(0.3) * (t59 + WAM7_C(2.0) * t58);
     const wam7_real_t t61 = parameters[ZZ4] + (t37 + t44 + (t56 + t60));
     const wam7_real_t t62 = t61 + WAM7_C(324.0) * parameters[IA4];
-    const wam7_real_t t63 = t18 * t20 - t22 * parameters[ZZ7];
+    const wam7_real_t t63 = t18 * t20 - t22 * parameters[ZZ7]; /* link j7: column of the mass matrix */
     const wam7_real_t t64 = t18 * t3;
     const wam7_real_t t65 = t39 * t64 - t42 * t19;
     const wam7_real_t t66 = t22 * t3;
     const wam7_real_t t67 = t42 * t63 - t39 * t4 + (WAM7_C(-0.045) * t66 + WAM7_C(0.3) * t65);
     const wam7_real_t t68 = t67 * t5;
-    const wam7_real_t t69 = t39 * t57;
+    const wam7_real_t t69 = t39 * t57; /* link j6: column of the mass matrix */
     const wam7_real_t t70 = t42 * t40 - t39 * t12 + (WAM7_C(-0.045) * t50 + WAM7_C(0.3) * t69);
     const wam7_real_t t71 = t70 - t67 * t6;
     const wam7_real_t t72 = t71 * t33;
-    const wam7_real_t t73 = t21 + t22 * t23 - parameters[XZ5];
+    const wam7_real_t t73 = t21 + t22 * t23 - parameters[XZ5]; /* link j6: inertia of it and all beyond */
     const wam7_real_t t74 = parameters[YZ5] + t31;
-    const wam7_real_t t75 = t42 * t51 - t39 * t46;
+    const wam7_real_t t75 = t42 * t51 - t39 * t46; /* link j5: column of the mass matrix */
     const wam7_real_t t76 = t42 * t73 - t39 * t74 + WAM7_C(-0.3) * t75;
     const wam7_real_t t77 = t76 - t67 * t28 + t71 * t34;
     const wam7_real_t t78 = WAM7_C(1.0) / t35;
@@ -302,38 +306,40 @@ int wam7_forward_dynamics_derivatives_standard(
     const wam7_real_t t85 = WAM7_C(0.045) * t52;
     const wam7_real_t t86 = t25 + t85;
     const wam7_real_t t88 = t87 * t86 - t84 * t83 - t85;
-    const wam7_real_t t89 = t42 * t64 + t39 * t19;
+    const wam7_real_t t89 = t42 * t64 + t39 * t19; /* link j7: column of the mass matrix */
     const wam7_real_t t90 = WAM7_C(0.3) * t89 - (t39 * t63 + t42 * t4);
     const wam7_real_t t91 = WAM7_C(0.045) * t89;
     const wam7_real_t t92 = t27 + t91;
     const wam7_real_t t93 = t87 * t92 - t84 * t90 - t91;
-    const wam7_real_t t94 = t42 * t57;
+    const wam7_real_t t94 = t42 * t57; /* link j6: column of the mass matrix */
     const wam7_real_t t95 = WAM7_C(0.3) * t94 - (t39 * t40 + t42 * t12);
     const wam7_real_t t96 = WAM7_C(0.045) * t94;
     const wam7_real_t t97 = t31 + t96;
     const wam7_real_t t98 = t87 * t97 - t84 * t95 - t96;
     const wam7_real_t t99 = t93 * t6 - t98;
     const wam7_real_t t100 = t93 * t28 - t88 + t99 * t34;
+    /* link j5: inertia of it and all beyond */
     const wam7_real_t t101 = parameters[XZ4] + (t41 - t42 * t43 + WAM7_C(-0.045) * t75);
     const wam7_real_t t102 = parameters[YZ4] + t76;
-    const wam7_real_t t103 = t84 * t101 + t87 * t102;
+    const wam7_real_t t103 = t84 * t101 + t87 * t102; /* link j4: column of the mass matrix */
     const wam7_real_t t104 = t103 - t93 * t68 + t99 * t72 + t100 * t79;
     const wam7_real_t t105 = WAM7_C(1.0) / t80;
     const wam7_real_t t106 = t104 * t105;
     const wam7_real_t t107 = t100 * t78;
     const wam7_real_t t108 = t93 * t5;
-    const wam7_real_t t109 = parameters[XX4] + (t38 - t44 + t60);
+    const wam7_real_t t109 = parameters[XX4] + (t38 - t44 + t60); /* link j5: inertia of it and all beyond */
     const wam7_real_t t110 = parameters[YY4] + (t25 + t56);
     const wam7_real_t t111 = t52 + t55;
     const wam7_real_t t112 = parameters[XY4] + (t82 + (WAM7_C(-0.045) * t58 + WAM7_C(-0.3) * t111));
+    /* link j4: inertia of it and all beyond */
     const wam7_real_t t113 = t87 * (t110 - t109) + t112 * (WAM7_C(2.0) * t84);
     const wam7_real_t t114 = t87 * t113;
-    const wam7_real_t t115 = parameters[MX4] - t111;
+    const wam7_real_t t115 = parameters[MX4] - t111; /* link j5: inertia of it and all beyond */
     const wam7_real_t t116 = t58 + t59;
     const wam7_real_t t117 = t116 - parameters[MY4];
-    const wam7_real_t t118 = t84 * t117 + t87 * t115;
-    const wam7_real_t t119 = parameters[M4] + t54;
-    const wam7_real_t t120 = WAM7_C(0.045) * t119;
+    const wam7_real_t t118 = t84 * t117 + t87 * t115; /* link j4: column of the mass matrix */
+    const wam7_real_t t119 = parameters[M4] + t54; /* link j5: inertia of it and all beyond */
+    const wam7_real_t t120 = WAM7_C(0.045) * t119; /* link j4: inertia of it and all beyond */
     const wam7_real_t t121 = WAM7_C(0.045) * (t120 + WAM7_C(2.0) * t118);
     const wam7_real_t t122 = parameters[ZZ3] + (t109 + t114 + t121);
     const wam7_real_t t123 = t122 + WAM7_C(798.0625) * parameters[IA3];
@@ -357,26 +363,28 @@ int wam7_forward_dynamics_derivatives_standard(
     }
     const wam7_real_t t128 = parameters[XX3] + (t110 - t114);
     const wam7_real_t t129 = parameters[YY3] + (t61 + t121);
-    const wam7_real_t t131 = t87 * t101 - t84 * t102;
-    const wam7_real_t t132 = t75 - parameters[MZ4];
+    const wam7_real_t t131 = t87 * t101 - t84 * t102; /* link j4: column of the mass matrix */
+    const wam7_real_t t132 = t75 - parameters[MZ4]; /* link j5: inertia of it and all beyond */
+    /* link j4: inertia of it and all beyond */
     const wam7_real_t t133 = parameters[XY3] + (t131 + WAM7_C(0.045) * t132);
+    /* link j3: inertia of it and all beyond */
     const wam7_real_t t135 = t130 * (t129 - t128) + t133 * (WAM7_C(2.0) * t134);
     const wam7_real_t t136 = t130 * t135;
-    const wam7_real_t t137 = t84 * t115 - t87 * t117;
-    const wam7_real_t t138 = t137 - parameters[MZ3];
+    const wam7_real_t t137 = t84 * t115 - t87 * t117; /* link j4: column of the mass matrix */
+    const wam7_real_t t138 = t137 - parameters[MZ3]; /* link j4: inertia of it and all beyond */
     const wam7_real_t t139 = parameters[M3] + t119;
-    const wam7_real_t t140 = WAM7_C(-0.55) * t139;
+    const wam7_real_t t140 = WAM7_C(-0.55) * t139; /* link j3: inertia of it and all beyond */
     const wam7_real_t t141 = WAM7_C(0.55) * (WAM7_C(-2.0) * t138 - t140);
     const wam7_real_t t142 = parameters[ZZ2] + (t128 + t136 + t141);
     const wam7_real_t t143 = t142 + WAM7_C(798.0625) * parameters[IA2];
-    const wam7_real_t t144 = t87 * t90 + t84 * t92;
+    const wam7_real_t t144 = t87 * t90 + t84 * t92; /* link j7: column of the mass matrix */
     const wam7_real_t t145 = t84 * t65 + t87 * t66;
     const wam7_real_t t146 = t67 + WAM7_C(0.045) * t145;
     const wam7_real_t t147 = t84 * t66 - t87 * t65;
     const wam7_real_t t148 = t130 * t147 + t134 * t89;
     const wam7_real_t t149 = t134 * t144 - t130 * t146 - WAM7_C(-0.55) * t148;
     const wam7_real_t t150 = t149 * t5;
-    const wam7_real_t t151 = t87 * t95 + t84 * t97;
+    const wam7_real_t t151 = t87 * t95 + t84 * t97; /* link j6: column of the mass matrix */
     const wam7_real_t t152 = t84 * t69 + t87 * t50;
     const wam7_real_t t153 = t70 + WAM7_C(0.045) * t152;
     const wam7_real_t t154 = t84 * t50 - t87 * t69;
@@ -384,7 +392,7 @@ int wam7_forward_dynamics_derivatives_standard(
     const wam7_real_t t156 = t134 * t151 - t130 * t153 + WAM7_C(0.55) * t155;
     const wam7_real_t t157 = t156 - t149 * t6;
     const wam7_real_t t158 = t157 * t33;
-    const wam7_real_t t159 = t87 * t83 + t84 * t86;
+    const wam7_real_t t159 = t87 * t83 + t84 * t86; /* link j5: column of the mass matrix */
     const wam7_real_t t160 = t84 * t75;
     const wam7_real_t t161 = t76 + WAM7_C(-0.045) * t160;
     const wam7_real_t t162 = t87 * t75;
@@ -393,17 +401,18 @@ int wam7_forward_dynamics_derivatives_standard(
     const wam7_real_t t165 = t164 - t149 * t28 + t157 * t34;
     const wam7_real_t t166 = t165 * t78;
     const wam7_real_t t167 = t143 - t149 * t150 - t157 * t158 - t165 * t166;
-    const wam7_real_t t168 = t61 + WAM7_C(0.045) * t118;
+    const wam7_real_t t168 = t61 + WAM7_C(0.045) * t118; /* link j4: column of the mass matrix */
     const wam7_real_t t169 = t130 * t137;
     const wam7_real_t t170 = WAM7_C(0.55) * t169 - (t134 * t131 + t130 * t168);
     const wam7_real_t t171 = t170 - t149 * t68 - t157 * t72 - t165 * t79;
     const wam7_real_t t172 = t171 * t105;
+    /* link j4: inertia of it and all beyond */
     const wam7_real_t t173 = parameters[XZ3] - (t112 - t84 * t113 - WAM7_C(0.045) * t137);
     const wam7_real_t t174 = t103 - parameters[YZ3];
     const wam7_real_t t175 = t132 - parameters[MY3];
     const wam7_real_t t176 = t118 + t120;
     const wam7_real_t t177 = parameters[MX3] + t176;
-    const wam7_real_t t178 = t130 * t175 - t134 * t177;
+    const wam7_real_t t178 = t130 * t175 - t134 * t177; /* link j3: column of the mass matrix */
     const wam7_real_t t179 = t134 * t173 - t130 * t174 + WAM7_C(0.55) * t178;
     const wam7_real_t t180 = t179 - t149 * t108 + t157 * t124 + t165 * t107;
     const wam7_real_t t181 = t180 - t171 * t106;
@@ -425,32 +434,33 @@ int wam7_forward_dynamics_derivatives_standard(
         wam7_zero(ddq_by_input, 49);
         return WAM7_STATUS_PIVOT;
     }
-    const wam7_real_t t186 = t134 * t135 - t133 - parameters[XZ2];
+    const wam7_real_t t186 = t134 * t135 - t133 - parameters[XZ2]; /* link j3: inertia of it and all beyond */
     const wam7_real_t t188 = parameters[YZ2] - t179;
-    const wam7_real_t t190 = t130 * t89 - t134 * t147;
+    const wam7_real_t t190 = t130 * t89 - t134 * t147; /* link j7: column of the mass matrix */
     const wam7_real_t t191 = t130 * t144 + t134 * t146 + WAM7_C(0.55) * t190;
     const wam7_real_t t192 = t187 * t191 - t189 * t93;
-    const wam7_real_t t193 = t130 * t94 - t134 * t154;
+    const wam7_real_t t193 = t130 * t94 - t134 * t154; /* link j6: column of the mass matrix */
     const wam7_real_t t194 = t130 * t151 + t134 * t153 + WAM7_C(0.55) * t193;
     const wam7_real_t t195 = t187 * t194 - t189 * t98 - t192 * t6;
     const wam7_real_t t196 = t187 * t186 - t189 * t188 + t192 * t150 + t195 * t158;
-    const wam7_real_t t197 = t130 * t52 - t134 * t162;
+    const wam7_real_t t197 = t130 * t52 - t134 * t162; /* link j5: column of the mass matrix */
     const wam7_real_t t198 = t130 * t159 + t134 * t161 + WAM7_C(0.55) * t197;
     const wam7_real_t t199 = t187 * t198 - t189 * t88 - t192 * t28 + t195 * t34;
-    const wam7_real_t t200 = t134 * t137;
+    const wam7_real_t t200 = t134 * t137; /* link j4: column of the mass matrix */
     const wam7_real_t t201 = t134 * t168 - t130 * t131 + WAM7_C(-0.55) * t200;
     const wam7_real_t t202 = t189 * t103 - t187 * t201 + t192 * t68 + t195 * t72;
     const wam7_real_t t203 = t202 + t199 * t79;
-    const wam7_real_t t204 = t134 * t175 + t130 * t177;
+    const wam7_real_t t204 = t134 * t175 + t130 * t177; /* link j3: column of the mass matrix */
     const wam7_real_t t205 = t130 * t173 + t134 * t174 + WAM7_C(-0.55) * t204;
     const wam7_real_t t206 = t187 * t205 - t189 * t122 - t192 * t108 + t195 * t124;
     const wam7_real_t t207 = t206 + t199 * t107 + t203 * t106;
     const wam7_real_t t208 = t196 + t199 * t166 - t203 * t172 + t207 * t183;
     const wam7_real_t t209 = WAM7_C(1.0) / t184;
     const wam7_real_t t210 = t208 * t209;
-    const wam7_real_t t211 = t136 - t129 - t141 - parameters[XX2];
+    const wam7_real_t t211 = t136 - t129 - t141 - parameters[XX2]; /* link j3: inertia of it and all beyond */
     const wam7_real_t t212 = parameters[YY2] + t122;
     const wam7_real_t t213 = parameters[XY2] - t205;
+    /* link j2: inertia of it and all beyond */
     const wam7_real_t t214 = t189 * (t189 * (t211 + t212) + t213 * (WAM7_C(2.0) * t187));
     const wam7_real_t t215 = parameters[ZZ1] + (t214 - t211) + WAM7_C(1764.0) * parameters[IA1];
     const wam7_real_t t216 = t192 * t5;
@@ -475,295 +485,316 @@ int wam7_forward_dynamics_derivatives_standard(
         wam7_zero(ddq_by_input, 49);
         return WAM7_STATUS_PIVOT;
     }
-    const wam7_real_t t224 = t187 * dq[0];
-    const wam7_real_t t225 = t130 * t224 - t134 * dq[1];
-    const wam7_real_t t226 = t189 * dq[0];
-    const wam7_real_t t227 = dq[2] + t226;
-    const wam7_real_t t228 = t87 * t225 + t84 * t227;
-    const wam7_real_t t229 = t134 * t224 + t130 * dq[1];
-    const wam7_real_t t230 = dq[3] + t229;
-    const wam7_real_t t231 = t39 * t228 - t42 * t230;
+    const wam7_real_t t224 = t187 * dq[0]; /* link j2: motion */
+    const wam7_real_t t225 = t130 * t224 - t134 * dq[1]; /* link j3: motion */
+    const wam7_real_t t226 = t189 * dq[0]; /* link j2: motion */
+    const wam7_real_t t227 = dq[2] + t226; /* link j3: motion */
+    const wam7_real_t t228 = t87 * t225 + t84 * t227; /* link j4: motion */
+    const wam7_real_t t229 = t134 * t224 + t130 * dq[1]; /* link j3: motion */
+    const wam7_real_t t230 = dq[3] + t229; /* link j4: motion */
+    const wam7_real_t t231 = t39 * t228 - t42 * t230; /* link j5: motion */
     const wam7_real_t t232 = t42 * t228 + t39 * t230;
     const wam7_real_t t233 = t231 * t232;
-    const wam7_real_t t234 = t225 * t229;
-    const wam7_real_t t235 = dq[1] * t224;
-    const wam7_real_t t236 = t234 - t235;
-    const wam7_real_t t237 = t229 * t227;
-    const wam7_real_t t238 = t224 * t226;
+    const wam7_real_t t234 = t225 * t229; /* link j3: motion */
+    const wam7_real_t t235 = dq[1] * t224; /* link j2: motion */
+    const wam7_real_t t236 = t234 - t235; /* link j4: motion */
+    const wam7_real_t t237 = t229 * t227; /* link j3: motion */
+    const wam7_real_t t238 = t224 * t226; /* link j2: motion */
     const wam7_real_t t239 = dq[1] * t226;
     const wam7_real_t t240 = WAM7_C(2.0) * t239;
-    const wam7_real_t t241 = t134 * t238 + t130 * t240;
+    const wam7_real_t t241 = t134 * t238 + t130 * t240; /* link j3: motion */
     const wam7_real_t t242 = t241 - t237;
-    const wam7_real_t t243 = t242 - t237;
+    const wam7_real_t t243 = t242 - t237; /* link j4: motion */
     const wam7_real_t t244 = t84 * t243 - t87 * t236;
     const wam7_real_t t245 = t228 * t230;
     const wam7_real_t t246 = t245 + t244;
-    const wam7_real_t t247 = t246 - t233;
-    const wam7_real_t t248 = t87 * t227 - t84 * t225;
+    const wam7_real_t t247 = t246 - t233; /* link j6: motion */
+    const wam7_real_t t248 = t87 * t227 - t84 * t225; /* link j4: motion */
     const wam7_real_t t249 = t228 * t248;
-    const wam7_real_t t250 = t225 * t227;
+    const wam7_real_t t250 = t225 * t227; /* link j3: motion */
     const wam7_real_t t251 = t130 * t238 - t134 * t240;
     const wam7_real_t t252 = t250 - t251;
-    const wam7_real_t t253 = t252 - t249;
-    const wam7_real_t t254 = t84 * t236 + t87 * t243;
+    const wam7_real_t t253 = t252 - t249; /* link j5: motion */
+    const wam7_real_t t254 = t84 * t236 + t87 * t243; /* link j4: motion */
     const wam7_real_t t255 = t248 * t230;
     const wam7_real_t t256 = t255 + t254;
-    const wam7_real_t t257 = t255 + t256;
+    const wam7_real_t t257 = t255 + t256; /* link j5: motion */
     const wam7_real_t t258 = t39 * t257 - t42 * t253;
     const wam7_real_t t259 = dq[4] + t248;
     const wam7_real_t t260 = t232 * t259;
     const wam7_real_t t261 = t258 - t260;
-    const wam7_real_t t262 = t261 - t260;
+    const wam7_real_t t262 = t261 - t260; /* link j6: motion */
     const wam7_real_t t263 = t18 * t262 - t22 * t247;
     const wam7_real_t t264 = t22 * t231 - t18 * t259;
     const wam7_real_t t265 = dq[5] + t232;
     const wam7_real_t t266 = t264 * t265;
     const wam7_real_t t267 = t266 - t263;
-    const wam7_real_t t268 = t266 + t267;
-    const wam7_real_t t269 = t39 * t253 + t42 * t257;
+    const wam7_real_t t268 = t266 + t267; /* link j7: motion */
+    const wam7_real_t t269 = t39 * t253 + t42 * t257; /* link j5: motion */
     const wam7_real_t t270 = t231 * t259;
     const wam7_real_t t271 = t270 + t269;
-    const wam7_real_t t272 = t18 * t231 + t22 * t259;
+    const wam7_real_t t272 = t18 * t231 + t22 * t259; /* link j6: motion */
     const wam7_real_t t273 = t272 * t264;
-    const wam7_real_t t274 = t273 + t271;
+    const wam7_real_t t274 = t273 + t271; /* link j7: motion */
     const wam7_real_t t275 = t1 * t274 + t2 * t268;
     const wam7_real_t t276 = t1 * t272 + t2 * t265;
     const wam7_real_t t277 = t264 - dq[6];
     const wam7_real_t t278 = t276 * t277;
     const wam7_real_t t279 = t278 - t275;
-    const wam7_real_t t280 = t278 * (parameters[YY7] - parameters[ZZ7]);
-    const wam7_real_t t281 = t2 * t274 - t1 * t268;
+    const wam7_real_t t280 = t278 * (parameters[YY7] - parameters[ZZ7]); /* link j7: force and moment */
+    const wam7_real_t t281 = t2 * t274 - t1 * t268; /* link j7: motion */
     const wam7_real_t t282 = t2 * t272 - t1 * t265;
     const wam7_real_t t283 = t282 * t277;
     const wam7_real_t t284 = t281 - t283;
-    const wam7_real_t t285 = t284 - t283;
-    const wam7_real_t t286 = t18 * t247 + t22 * t262;
+    const wam7_real_t t285 = t284 - t283; /* link j7: force and moment */
+    const wam7_real_t t286 = t18 * t247 + t22 * t262; /* link j6: motion */
     const wam7_real_t t287 = t272 * t265;
     const wam7_real_t t288 = t287 + t286;
-    const wam7_real_t t289 = t282 * t276;
-    const wam7_real_t t290 = t289 + t288;
+    const wam7_real_t t289 = t282 * t276; /* link j7: motion */
+    const wam7_real_t t290 = t289 + t288; /* link j7: force and moment */
     const wam7_real_t t291 = t280 - parameters[XX7] * t279 + parameters[XY7] * t285 - parameters[XZ7] * t290;
-    const wam7_real_t t292 = t276 * t276;
+    const wam7_real_t t292 = t276 * t276; /* link j7: motion */
     const wam7_real_t t293 = t277 * t277;
-    const wam7_real_t t294 = (t293 - t292) * parameters[YZ7];
-    const wam7_real_t t295 = t248 * t248;
+    const wam7_real_t t294 = (t293 - t292) * parameters[YZ7]; /* link j7: force and moment */
+    const wam7_real_t t295 = t248 * t248; /* link j4: motion */
     const wam7_real_t t296 = t230 * t230;
-    const wam7_real_t t297 = t295 + t296;
+    const wam7_real_t t297 = t295 + t296; /* link j5: motion */
     const wam7_real_t t298 = WAM7_C(0.045) * t297;
-    const wam7_real_t t299 = t229 * t229;
+    const wam7_real_t t299 = t229 * t229; /* link j3: motion */
     const wam7_real_t t300 = t227 * t227;
-    const wam7_real_t t301 = t299 + t300;
+    const wam7_real_t t301 = t299 + t300; /* link j4: motion */
     const wam7_real_t t302 = WAM7_C(0.045) * t301;
-    const wam7_real_t t303 = WAM7_C(9.81) * t187;
-    const wam7_real_t t304 = WAM7_C(-0.55) * t238 - t303;
+    const wam7_real_t t303 = WAM7_C(9.81) * t187; /* link j2: motion */
+    const wam7_real_t t304 = WAM7_C(-0.55) * t238 - t303; /* link j3: motion */
     const wam7_real_t t305 = WAM7_C(1.1) * t239;
     const wam7_real_t t306 = t130 * t304 + t134 * t305;
-    const wam7_real_t t307 = t306 - t302;
+    const wam7_real_t t307 = t306 - t302; /* link j4: motion */
     const wam7_real_t t308 = t250 + t252;
-    const wam7_real_t t309 = t224 * t224;
+    const wam7_real_t t309 = t224 * t224; /* link j2: motion */
     const wam7_real_t t310 = dq[1] * dq[1];
     const wam7_real_t t311 = WAM7_C(9.81) * t189;
-    const wam7_real_t t312 = t311 + WAM7_C(-0.55) * (t309 + t310);
-    const wam7_real_t t313 = t312 - WAM7_C(0.045) * t308;
+    const wam7_real_t t312 = t311 + WAM7_C(-0.55) * (t309 + t310); /* link j3: motion */
+    const wam7_real_t t313 = t312 - WAM7_C(0.045) * t308; /* link j4: motion */
     const wam7_real_t t314 = t87 * t307 - t84 * t313;
-    const wam7_real_t t315 = t314 + (t298 + WAM7_C(0.3) * t253);
+    const wam7_real_t t315 = t314 + (t298 + WAM7_C(0.3) * t253); /* link j5: motion */
     const wam7_real_t t316 = t245 + t246;
-    const wam7_real_t t317 = t235 + t234;
-    const wam7_real_t t318 = t134 * t304 - t130 * t305;
-    const wam7_real_t t319 = t318 + WAM7_C(0.045) * t317;
-    const wam7_real_t t320 = WAM7_C(0.045) * t316 - WAM7_C(-0.3) * t257 - t319;
+    const wam7_real_t t317 = t235 + t234; /* link j4: motion */
+    const wam7_real_t t318 = t134 * t304 - t130 * t305; /* link j3: motion */
+    const wam7_real_t t319 = t318 + WAM7_C(0.045) * t317; /* link j4: motion */
+    const wam7_real_t t320 = WAM7_C(0.045) * t316 - WAM7_C(-0.3) * t257 - t319; /* link j5: motion */
     const wam7_real_t t321 = t42 * t315 - t39 * t320;
-    const wam7_real_t t322 = t321 + WAM7_C(0.06) * t268;
-    const wam7_real_t t323 = t39 * t315 + t42 * t320;
-    const wam7_real_t t324 = t228 * t228;
-    const wam7_real_t t325 = t324 + t296;
+    const wam7_real_t t322 = t321 + WAM7_C(0.06) * t268; /* link j7: motion */
+    const wam7_real_t t323 = t39 * t315 + t42 * t320; /* link j5: motion */
+    const wam7_real_t t324 = t228 * t228; /* link j4: motion */
+    const wam7_real_t t325 = t324 + t296; /* link j5: motion */
     const wam7_real_t t326 = WAM7_C(0.3) * t325;
     const wam7_real_t t327 = t249 + t252;
-    const wam7_real_t t328 = t84 * t307 + t87 * t313;
-    const wam7_real_t t329 = t326 + WAM7_C(-0.045) * t327 - t328;
-    const wam7_real_t t330 = t18 * t323 + t22 * t329;
-    const wam7_real_t t331 = t330 + WAM7_C(0.06) * t274;
+    const wam7_real_t t328 = t84 * t307 + t87 * t313; /* link j4: motion */
+    const wam7_real_t t329 = t326 + WAM7_C(-0.045) * t327 - t328; /* link j5: motion */
+    const wam7_real_t t330 = t18 * t323 + t22 * t329; /* link j6: motion */
+    const wam7_real_t t331 = t330 + WAM7_C(0.06) * t274; /* link j7: motion */
     const wam7_real_t t332 = t1 * t331 + t2 * t322;
-    const wam7_real_t t333 = t22 * t323 - t18 * t329;
+    const wam7_real_t t333 = t22 * t323 - t18 * t329; /* link j6: motion */
     const wam7_real_t t334 = t272 * t272;
     const wam7_real_t t335 = t265 * t265;
-    const wam7_real_t t336 = t334 + t335;
+    const wam7_real_t t336 = t334 + t335; /* link j7: motion */
     const wam7_real_t t337 = WAM7_C(0.06) * t336;
     const wam7_real_t t338 = t337 - t333;
+    /* link j7: force and moment */
     const wam7_real_t t339 = t291 - t294 - (parameters[MY7] * t338 - parameters[MZ7] * t332);
     const wam7_real_t t340 = t283 * (parameters[XX7] - parameters[ZZ7]);
     const wam7_real_t t341 = t278 + t279;
     const wam7_real_t t342 = t289 - t288;
     const wam7_real_t t343 = parameters[XY7] * t341 - (parameters[YY7] * t284 + t340)
         - parameters[YZ7] * t342;
-    const wam7_real_t t344 = t282 * t282;
-    const wam7_real_t t345 = (t344 - t293) * parameters[XZ7];
-    const wam7_real_t t346 = t1 * t322 - t2 * t331;
+    const wam7_real_t t344 = t282 * t282; /* link j7: motion */
+    const wam7_real_t t345 = (t344 - t293) * parameters[XZ7]; /* link j7: force and moment */
+    const wam7_real_t t346 = t1 * t322 - t2 * t331; /* link j7: motion */
+    /* link j7: force and moment */
     const wam7_real_t t347 = t343 + t345 + (parameters[MZ7] * t346 - parameters[MX7] * t338);
     const wam7_real_t t348 = (t292 + t293) * parameters[MX7];
     const wam7_real_t t349 = parameters[M7] * t346 + (t348 + parameters[MY7] * t342 - parameters[MZ7] * t281);
     const wam7_real_t t350 = (t344 + t293) * parameters[MY7];
     const wam7_real_t t351 = parameters[M7] * t332 + (parameters[MX7] * t290 + t350 + parameters[MZ7] * t275);
-    const wam7_real_t t352 = t1 * t349 + t2 * t351;
-    const wam7_real_t t353 = t266 * (parameters[YY6] - parameters[ZZ6]);
-    const wam7_real_t t354 = t287 + t288;
+    const wam7_real_t t352 = t1 * t349 + t2 * t351; /* link j7: what it passes on */
+    const wam7_real_t t353 = t266 * (parameters[YY6] - parameters[ZZ6]); /* link j6: force and moment */
+    const wam7_real_t t354 = t287 + t288; /* link j7: motion */
     const wam7_real_t t355 = t271 - t273;
+    /* link j6: force and moment */
     const wam7_real_t t356 = parameters[XX6] * t267 - t353 + parameters[XY6] * t354 + parameters[XZ6] * t355;
-    const wam7_real_t t357 = t264 * t264;
-    const wam7_real_t t358 = (t357 - t335) * parameters[YZ6];
+    const wam7_real_t t357 = t264 * t264; /* link j6: motion */
+    const wam7_real_t t358 = (t357 - t335) * parameters[YZ6]; /* link j6: force and moment */
+    /* link j7: what it passes on */
     const wam7_real_t t359 = t356 + t358 + (parameters[MZ6] * t333 - parameters[MY6] * t321) + (t2 * t339
         + t1 * t347 + WAM7_C(0.06) * t352);
-    const wam7_real_t t360 = t287 * (parameters[XX6] - parameters[ZZ6]);
+    const wam7_real_t t360 = t287 * (parameters[XX6] - parameters[ZZ6]); /* link j6: force and moment */
     const wam7_real_t t361 = parameters[YY6] * t288 - t360 + parameters[XY6] * t268 + parameters[YZ6] * t274;
     const wam7_real_t t362 = (t334 - t335) * parameters[XZ6];
-    const wam7_real_t t363 = t289 * t7;
+    const wam7_real_t t363 = t289 * t7; /* link j7: force and moment */
     const wam7_real_t t364 = parameters[ZZ7] * t288 + t363 - parameters[YZ7] * t281 - parameters[XZ7] * t275;
     const wam7_real_t t365 = (t344 - t292) * parameters[XY7];
     const wam7_real_t t366 = t364 - t365 + (parameters[MX7] * t332 - parameters[MY7] * t346);
+    /* link j7: what it passes on */
     const wam7_real_t t367 = t361 - t362 + (parameters[MZ6] * t330 + parameters[MX6] * t321) + t366;
-    const wam7_real_t t368 = t260 * (parameters[YY5] - parameters[ZZ5]);
-    const wam7_real_t t369 = t270 + t271;
+    const wam7_real_t t368 = t260 * (parameters[YY5] - parameters[ZZ5]); /* link j5: force and moment */
+    const wam7_real_t t369 = t270 + t271; /* link j6: motion */
     const wam7_real_t t370 = t233 + t246;
+    /* link j5: force and moment */
     const wam7_real_t t371 = parameters[XY5] * t369 - (parameters[XX5] * t261 + t368)
         - parameters[XZ5] * t370;
-    const wam7_real_t t372 = t232 * t232;
+    const wam7_real_t t372 = t232 * t232; /* link j5: motion */
     const wam7_real_t t373 = t259 * t259;
-    const wam7_real_t t374 = (t373 - t372) * parameters[YZ5];
+    const wam7_real_t t374 = (t373 - t372) * parameters[YZ5]; /* link j5: force and moment */
+    /* link j6: what it passes on */
     const wam7_real_t t375 = t371 - t374 - (parameters[MY5] * t329 - parameters[MZ5] * t321) + (t18 * t359
         - t22 * t367);
-    const wam7_real_t t376 = t2 * t349 - t1 * t351;
-    const wam7_real_t t377 = t273 * (parameters[YY6] - parameters[XX6]);
+    const wam7_real_t t376 = t2 * t349 - t1 * t351; /* link j7: what it passes on */
+    const wam7_real_t t377 = t273 * (parameters[YY6] - parameters[XX6]); /* link j6: force and moment */
     const wam7_real_t t378 = t377 - parameters[ZZ6] * t271 - parameters[YZ6] * t286 + parameters[XZ6] * t263;
     const wam7_real_t t379 = (t357 - t334) * parameters[XY6];
+    /* link j7: what it passes on */
     const wam7_real_t t380 = t378 + t379 + (parameters[MX6] * t333 + parameters[MY6] * t330) + (t2 * t347
         - t1 * t339 + WAM7_C(0.06) * t376);
-    const wam7_real_t t381 = t270 * (parameters[XX5] - parameters[ZZ5]);
+    const wam7_real_t t381 = t270 * (parameters[XX5] - parameters[ZZ5]); /* link j5: force and moment */
     const wam7_real_t t382 = t381 - parameters[YY5] * t271 + parameters[XY5] * t262 + parameters[YZ5] * t247;
-    const wam7_real_t t383 = t231 * t231;
-    const wam7_real_t t384 = (t383 - t373) * parameters[XZ5];
+    const wam7_real_t t383 = t231 * t231; /* link j5: motion */
+    const wam7_real_t t384 = (t383 - t373) * parameters[XZ5]; /* link j5: force and moment */
+    /* link j6: what it passes on */
     const wam7_real_t t385 = t382 + t384 - (parameters[MZ5] * t323 + parameters[MX5] * t329) + t380;
-    const wam7_real_t t386 = (t357 + t335) * parameters[MX6];
+    const wam7_real_t t386 = (t357 + t335) * parameters[MX6]; /* link j6: force and moment */
     const wam7_real_t t387 = t386 + parameters[MY6] * t274 - parameters[MZ6] * t286 - parameters[M6] * t330;
-    const wam7_real_t t388 = t387 + t376;
-    const wam7_real_t t389 = t336 * parameters[MY6];
+    const wam7_real_t t388 = t387 + t376; /* link j7: what it passes on */
+    const wam7_real_t t389 = t336 * parameters[MY6]; /* link j6: force and moment */
     const wam7_real_t t390 = parameters[MX6] * t355 - t389 + parameters[MZ6] * t263 - parameters[M6] * t333;
-    const wam7_real_t t391 = t344 + t292;
-    const wam7_real_t t392 = t391 * parameters[MZ7];
+    const wam7_real_t t391 = t344 + t292; /* link j7: columns */
+    const wam7_real_t t392 = t391 * parameters[MZ7]; /* link j7: force and moment */
     const wam7_real_t t393 = parameters[M7] * t338 + (parameters[MX7] * t285 + parameters[MY7] * t341 + t392);
-    const wam7_real_t t394 = t390 + t393;
-    const wam7_real_t t395 = (t372 + t373) * parameters[MX5];
+    const wam7_real_t t394 = t390 + t393; /* link j7: what it passes on */
+    const wam7_real_t t395 = (t372 + t373) * parameters[MX5]; /* link j5: force and moment */
     const wam7_real_t t396 = t395 - parameters[MY5] * t247 - parameters[MZ5] * t269 - parameters[M5] * t323;
-    const wam7_real_t t397 = t396 + (t18 * t388 + t22 * t394);
-    const wam7_real_t t398 = t334 + t357;
-    const wam7_real_t t399 = t398 * parameters[MZ6];
+    const wam7_real_t t397 = t396 + (t18 * t388 + t22 * t394); /* link j6: what it passes on */
+    const wam7_real_t t398 = t334 + t357; /* link j7: motion */
+    const wam7_real_t t399 = t398 * parameters[MZ6]; /* link j6: force and moment */
     const wam7_real_t t400 = parameters[M6] * t321 + (parameters[MX6] * t354 - parameters[MY6] * t268 + t399);
-    const wam7_real_t t401 = (t383 + t373) * parameters[MY5];
+    const wam7_real_t t401 = (t383 + t373) * parameters[MY5]; /* link j5: force and moment */
     const wam7_real_t t402 = parameters[M5] * t321 + (parameters[MX5] * t370 + t401 - parameters[MZ5] * t258);
-    const wam7_real_t t403 = t402 + (t400 + t352);
-    const wam7_real_t t404 = t42 * t397 + t39 * t403;
-    const wam7_real_t t405 = t255 * (parameters[ZZ4] - parameters[YY4]);
+    const wam7_real_t t403 = t402 + (t400 + t352); /* link j6: what it passes on */
+    const wam7_real_t t404 = t42 * t397 + t39 * t403; /* link j5: what it passes on */
+    const wam7_real_t t405 = t255 * (parameters[ZZ4] - parameters[YY4]); /* link j4: force and moment */
     const wam7_real_t t406 = parameters[XY4] * t316 - (parameters[XX4] * t256 + t405)
         + parameters[XZ4] * t327;
     const wam7_real_t t407 = (t295 - t296) * parameters[YZ4];
+    /* link j5: what it passes on */
     const wam7_real_t t408 = t406 + t407 + (parameters[MZ4] * t328 - parameters[MY4] * t319) + (t39 * t375
         + t42 * t385 + WAM7_C(0.3) * t404);
-    const wam7_real_t t409 = t233 * (parameters[XX5] - parameters[YY5]);
+    const wam7_real_t t409 = t233 * (parameters[XX5] - parameters[YY5]); /* link j5: force and moment */
     const wam7_real_t t410 = parameters[ZZ5] * t246 - t409 - parameters[YZ5] * t269 + parameters[XZ5] * t258;
     const wam7_real_t t411 = (t383 - t372) * parameters[XY5];
+    /* link j6: what it passes on */
     const wam7_real_t t412 = t410 - t411 + (parameters[MX5] * t321 + parameters[MY5] * t323) + (t22 * t359
         + t18 * t367);
-    const wam7_real_t t413 = t245 * (parameters[XX4] - parameters[ZZ4]);
+    const wam7_real_t t413 = t245 * (parameters[XX4] - parameters[ZZ4]); /* link j4: force and moment */
     const wam7_real_t t414 = parameters[YY4] * t246 - t413 - parameters[XY4] * t257 + parameters[YZ4] * t253;
     const wam7_real_t t415 = (t324 - t296) * parameters[XZ4];
+    /* link j5: what it passes on */
     const wam7_real_t t416 = t414 - t415 + (parameters[MZ4] * t314 + parameters[MX4] * t319) + (t412
         + WAM7_C(-0.045) * t404);
-    const wam7_real_t t417 = t237 * (parameters[ZZ3] - parameters[YY3]);
+    const wam7_real_t t417 = t237 * (parameters[ZZ3] - parameters[YY3]); /* link j3: force and moment */
     const wam7_real_t t418 = t417 - parameters[XX3] * t242 + parameters[XY3] * t308 - parameters[XZ3] * t317;
     const wam7_real_t t419 = (t299 - t300) * parameters[YZ3];
     const wam7_real_t t420 = t312 * parameters[MY3];
+    /* link j4: what it passes on */
     const wam7_real_t t421 = t418 + t419 + (t420 + parameters[MZ3] * t318) + (t87 * t408 - t84 * t416);
-    const wam7_real_t t422 = t39 * t397 - t42 * t403;
-    const wam7_real_t t423 = t383 + t372;
-    const wam7_real_t t424 = t423 * parameters[MZ5];
+    const wam7_real_t t422 = t39 * t397 - t42 * t403; /* link j5: what it passes on */
+    const wam7_real_t t423 = t383 + t372; /* link j6: motion */
+    const wam7_real_t t424 = t423 * parameters[MZ5]; /* link j5: force and moment */
     const wam7_real_t t425 = parameters[M5] * t329 + (parameters[MX5] * t369 + parameters[MY5] * t262 + t424);
-    const wam7_real_t t426 = t425 + (t18 * t394 - t22 * t388);
+    const wam7_real_t t426 = t425 + (t18 * t394 - t22 * t388); /* link j6: what it passes on */
+    /* link j5: what it passes on */
     const wam7_real_t t427 = t39 * t385 - t42 * t375 + (WAM7_C(0.045) * t426 + WAM7_C(0.3) * t422);
-    const wam7_real_t t428 = t249 * (parameters[YY4] - parameters[XX4]);
+    const wam7_real_t t428 = t249 * (parameters[YY4] - parameters[XX4]); /* link j4: force and moment */
     const wam7_real_t t429 = parameters[XZ4] * t254 - (parameters[ZZ4] * t252 + t428
         + parameters[YZ4] * t244);
     const wam7_real_t t430 = (t295 - t324) * parameters[XY4];
+    /* link j5: what it passes on */
     const wam7_real_t t431 = t429 + t430 + (parameters[MX4] * t328 + parameters[MY4] * t314) + t427;
-    const wam7_real_t t432 = t297 * parameters[MX4];
+    const wam7_real_t t432 = t297 * parameters[MX4]; /* link j4: force and moment */
     const wam7_real_t t433 = t432 + parameters[MY4] * t253 - parameters[MZ4] * t244 - parameters[M4] * t314;
-    const wam7_real_t t434 = t433 + t422;
-    const wam7_real_t t435 = t325 * parameters[MY4];
+    const wam7_real_t t434 = t433 + t422; /* link j5: what it passes on */
+    const wam7_real_t t435 = t325 * parameters[MY4]; /* link j4: force and moment */
     const wam7_real_t t436 = parameters[M4] * t328 + (t435 - parameters[MX4] * t327 - parameters[MZ4] * t254);
-    const wam7_real_t t437 = t426 - t436;
-    const wam7_real_t t438 = t250 * (parameters[XX3] - parameters[ZZ3]);
+    const wam7_real_t t437 = t426 - t436; /* link j5: what it passes on */
+    const wam7_real_t t438 = t250 * (parameters[XX3] - parameters[ZZ3]); /* link j3: force and moment */
     const wam7_real_t t439 = t438 - parameters[YY3] * t252 + parameters[XY3] * t243 - parameters[YZ3] * t236;
-    const wam7_real_t t440 = t225 * t225;
-    const wam7_real_t t441 = (t440 - t300) * parameters[XZ3];
+    const wam7_real_t t440 = t225 * t225; /* link j3: motion */
+    const wam7_real_t t441 = (t440 - t300) * parameters[XZ3]; /* link j3: force and moment */
     const wam7_real_t t442 = t312 * parameters[MX3];
+    /* link j4: what it passes on */
     const wam7_real_t t443 = t439 + t441 + (t442 - parameters[MZ3] * t306) + (t431
         + WAM7_C(0.045) * (t84 * t434 - t87 * t437));
-    const wam7_real_t t444 = t301 * parameters[MX3];
+    const wam7_real_t t444 = t301 * parameters[MX3]; /* link j3: force and moment */
     const wam7_real_t t445 = t444 + parameters[MY3] * t236 + parameters[MZ3] * t251 - parameters[M3] * t306;
-    const wam7_real_t t446 = t445 + (t87 * t434 + t84 * t437);
-    const wam7_real_t t447 = t324 + t295;
-    const wam7_real_t t448 = t447 * parameters[MZ4];
+    const wam7_real_t t446 = t445 + (t87 * t434 + t84 * t437); /* link j4: what it passes on */
+    const wam7_real_t t447 = t324 + t295; /* link j5: motion */
+    const wam7_real_t t448 = t447 * parameters[MZ4]; /* link j4: force and moment */
     const wam7_real_t t449 = parameters[M4] * t319 + (parameters[MX4] * t316 + parameters[MY4] * t257 + t448);
-    const wam7_real_t t450 = t449 + t404;
-    const wam7_real_t t451 = (t440 + t300) * parameters[MY3];
+    const wam7_real_t t450 = t449 + t404; /* link j5: what it passes on */
+    const wam7_real_t t451 = (t440 + t300) * parameters[MY3]; /* link j3: force and moment */
     const wam7_real_t t452 = parameters[M3] * t318 + (parameters[MX3] * t317 + t451 - parameters[MZ3] * t241);
-    const wam7_real_t t453 = t452 + t450;
+    const wam7_real_t t453 = t452 + t450; /* link j4: what it passes on */
+    /* link j3: what it passes on */
     const wam7_real_t t454 = t130 * t421 + t134 * t443 + WAM7_C(0.55) * (t134 * t446 + t130 * t453);
-    const wam7_real_t t455 = t239 * (parameters[YY2] - parameters[ZZ2]);
+    const wam7_real_t t455 = t239 * (parameters[YY2] - parameters[ZZ2]); /* link j2: force and moment */
     const wam7_real_t t456 = t455 - t239 * parameters[XX2] + WAM7_C(2.0) * t235 * parameters[XY2]
         + t238 * parameters[XZ2];
-    const wam7_real_t t457 = t226 * t226;
-    const wam7_real_t t458 = (t457 - t310) * parameters[YZ2];
+    const wam7_real_t t457 = t226 * t226; /* link j2: motion */
+    const wam7_real_t t458 = (t457 - t310) * parameters[YZ2]; /* link j2: force and moment */
     const wam7_real_t t459 = t311 * parameters[MZ2];
-    const wam7_real_t t460 = (t440 - t299) * parameters[XY3];
+    const wam7_real_t t460 = (t440 - t299) * parameters[XY3]; /* link j3: force and moment */
     const wam7_real_t t461 = t234 * (parameters[XX3] - parameters[YY3]);
     const wam7_real_t t462 = t235 * parameters[ZZ3] - t461 + parameters[YZ3] * t251 + parameters[XZ3] * t241;
+    /* link j4: what it passes on */
     const wam7_real_t t463 = t462 - t460 + (parameters[MX3] * t318 + parameters[MY3] * t306) + (t84 * t408
         + t87 * t416 + WAM7_C(0.045) * t450);
-    const wam7_real_t t464 = t235 * (parameters[XX2] - parameters[ZZ2]);
+    const wam7_real_t t464 = t235 * (parameters[XX2] - parameters[ZZ2]); /* link j2: force and moment */
     const wam7_real_t t465 = t235 * parameters[YY2] - t464 - t240 * parameters[XY2] - t238 * parameters[YZ2];
     const wam7_real_t t466 = (t309 - t310) * parameters[XZ2];
     const wam7_real_t t467 = t303 * parameters[MZ2];
+    /* link j2: what it passes on */
     const wam7_real_t t468 = t187 * (t456 + t458 + t459 + t454) + t189 * (t465 - t466 - t467 + t463);
-    const wam7_real_t t469 = wam7_sign(dq[0]);
+    const wam7_real_t t469 = wam7_sign(dq[0]); /* joint j1: coulomb_friction */
     const wam7_real_t t470 = WAM7_C(42.0) * (WAM7_C(-42.0) * dq[0] * parameters[FV1] - t469 * parameters[FC1])
         + t468;
-    const wam7_real_t t471 = wam7_sign(dq[6]);
+    const wam7_real_t t471 = wam7_sign(dq[6]); /* joint j7: coulomb_friction */
     const wam7_real_t t472 = WAM7_C(14.93) * (WAM7_C(-14.93) * dq[6] * parameters[FV7]
         - t471 * parameters[FC7]) + t366;
     const wam7_real_t t473 = WAM7_C(1.00031) * input[6] + t472;
-    const wam7_real_t t474 = wam7_sign(dq[5]);
+    const wam7_real_t t474 = wam7_sign(dq[5]); /* joint j6: coulomb_friction */
     const wam7_real_t t475 = WAM7_C(9.48) * (WAM7_C(-9.48) * dq[5] * parameters[FV6] - t474 * parameters[FC6])
         + t380;
     const wam7_real_t t476 = WAM7_C(2.23728) * input[5] + t475 - t473 * t6;
     const wam7_real_t t477 = WAM7_C(19.194) * input[0] + t470 + t473 * t216 + t476 * t217;
-    const wam7_real_t t478 = wam7_sign(dq[4]);
+    const wam7_real_t t478 = wam7_sign(dq[4]); /* joint j5: coulomb_friction */
     const wam7_real_t t479 = WAM7_C(9.48) * (WAM7_C(-9.48) * dq[4] * parameters[FV5] - t478 * parameters[FC5])
         + t412;
     const wam7_real_t t480 = WAM7_C(2.23728) * input[4] + t479 - t473 * t28 + t476 * t34;
-    const wam7_real_t t481 = wam7_sign(dq[3]);
+    const wam7_real_t t481 = wam7_sign(dq[3]); /* joint j4: coulomb_friction */
     const wam7_real_t t482 = WAM7_C(18.0) * (WAM7_C(-18.0) * dq[3] * parameters[FV4] - t481 * parameters[FC4])
         + t431;
     const wam7_real_t t483 = WAM7_C(8.226) * input[3] + t482 + t473 * t68 + t476 * t72;
     const wam7_real_t t484 = t483 + t480 * t79;
-    const wam7_real_t t485 = wam7_sign(dq[2]);
+    const wam7_real_t t485 = wam7_sign(dq[2]); /* joint j3: coulomb_friction */
     const wam7_real_t t486 = WAM7_C(28.25) * (WAM7_C(-28.25) * dq[2] * parameters[FV3]
         - t485 * parameters[FC3]) + t463;
     const wam7_real_t t487 = WAM7_C(12.910250000000001) * input[2] + t486 - t473 * t108 + t476 * t124;
     const wam7_real_t t488 = t487 + t480 * t107 + t484 * t106;
     const wam7_real_t t489 = t477 + t480 * t218 + t484 * t220 + t488 * t221;
+    /* link j3: what it passes on */
     const wam7_real_t t490 = t130 * t443 - t134 * t421 + WAM7_C(0.55) * (t130 * t446 - t134 * t453);
+    /* link j2: force and moment */
     const wam7_real_t t491 = t238 * (parameters[XX2] - parameters[YY2]) + (t457 - t309) * parameters[XY2]
         + (t311 * parameters[MX2] - t303 * parameters[MY2]);
-    const wam7_real_t t492 = wam7_sign(dq[1]);
+    const wam7_real_t t492 = wam7_sign(dq[1]); /* joint j2: coulomb_friction */
     const wam7_real_t t493 = WAM7_C(28.25) * (WAM7_C(-28.25) * dq[1] * parameters[FV2]
         - t492 * parameters[FC2]) + (t491 + t490);
     const wam7_real_t t494 = WAM7_C(12.910250000000001) * input[1] + t493 - t473 * t150 - t476 * t158;
@@ -796,14 +827,14 @@ int wam7_forward_dynamics_derivatives_standard(
     const wam7_real_t t514 = t277 * t513 - t282 * parameters[XZ7];
     const wam7_real_t t515 = parameters[YY7] - t512;
     const wam7_real_t t516 = t276 * parameters[YZ7] + t277 * t515;
-    const wam7_real_t t517 = t2 * (t509 + t511) + t1 * (t514 - t516);
+    const wam7_real_t t517 = t2 * (t509 + t511) + t1 * (t514 - t516); /* link j7: inertia, momentum beyond */
     const wam7_real_t t518 = t2 * t517;
-    const wam7_real_t t519 = WAM7_C(-0.06) * t265;
-    const wam7_real_t t520 = t19 * t519;
+    const wam7_real_t t519 = WAM7_C(-0.06) * t265; /* link j7: velocity of its origin */
+    const wam7_real_t t520 = t19 * t519; /* link j7: inertia, momentum beyond */
     const wam7_real_t t521 = t282 * parameters[MY7] + t276 * parameters[MX7];
     const wam7_real_t t522 = WAM7_C(0.06) * t521;
-    const wam7_real_t t523 = WAM7_C(0.06) * t272;
-    const wam7_real_t t524 = t3 * t523;
+    const wam7_real_t t523 = WAM7_C(0.06) * t272; /* link j7: velocity of its origin */
+    const wam7_real_t t524 = t3 * t523; /* link j7: inertia, momentum beyond */
     const wam7_real_t t525 = t522 - (t520 + t524);
     const wam7_real_t t526 = t264 * parameters[XZ6];
     const wam7_real_t t527 = t265 * parameters[XY6];
@@ -825,162 +856,189 @@ int wam7_forward_dynamics_derivatives_standard(
     const wam7_real_t t543 = t276 * parameters[XY7] + t282 * t515;
     const wam7_real_t t544 = parameters[XX6] + t539;
     const wam7_real_t t545 = t272 * parameters[XZ6] + t265 * t544 + (t2 * t542 - t1 * t543);
+    /* link j6: inertia, momentum beyond */
     const wam7_real_t t546 = t18 * (t528 - t531) + t22 * (t541 - t545);
     const wam7_real_t t547 = t18 * t546;
     const wam7_real_t t548 = t232 * parameters[XZ5];
     const wam7_real_t t549 = t259 * parameters[XY5];
     const wam7_real_t t550 = t548 - t549 + (t531 + t547);
+    /* link j7: inertia, momentum beyond */
     const wam7_real_t t551 = t526 + t530 + (t525 + (t518 - t509 + t524));
     const wam7_real_t t552 = t231 * parameters[YZ5];
-    const wam7_real_t t553 = t549 + t552 - t551;
-    const wam7_real_t t554 = t1 * t517;
+    const wam7_real_t t553 = t549 + t552 - t551; /* link j6: inertia, momentum beyond */
+    const wam7_real_t t554 = t1 * t517; /* link j7: inertia, momentum beyond */
     const wam7_real_t t555 = parameters[ZZ6] + t539;
     const wam7_real_t t556 = t264 * t555 - t265 * parameters[YZ6] + (t516 + t554 + t3 * t519);
     const wam7_real_t t557 = t265 * parameters[XZ6] + t272 * t555 + (t1 * t542 + t2 * t543);
     const wam7_real_t t558 = WAM7_C(-0.5) * (parameters[ZZ5] + (parameters[XX5] + parameters[YY5]));
     const wam7_real_t t559 = parameters[YY5] + t558;
+    /* link j6: inertia, momentum beyond */
     const wam7_real_t t560 = t232 * parameters[YZ5] - t259 * t559 + (t18 * t556 - t22 * t557);
+    /* link j7: inertia, momentum beyond */
     const wam7_real_t t561 = t272 * parameters[XY6] + t264 * t544 - (t554 - t514 + t19 * t523);
     const wam7_real_t t562 = t1 * t535 + t2 * t536;
     const wam7_real_t t563 = t1 * t533 + t2 * t534 + (WAM7_C(0.06) * t562 + t48 * t523);
     const wam7_real_t t564 = t563 - (t264 * parameters[XY6] + t272 * t540);
     const wam7_real_t t565 = parameters[XX5] + t558;
+    /* link j6: inertia, momentum beyond */
     const wam7_real_t t566 = t231 * parameters[XZ5] + t259 * t565 - (t18 * t561 + t22 * t564);
+    /* link j5: inertia, momentum beyond */
     const wam7_real_t t567 = t39 * (t550 - t553) - t42 * (t560 + t566);
     const wam7_real_t t568 = t39 * t567;
+    /* link j7: inertia, momentum beyond */
     const wam7_real_t t569 = t265 * parameters[MY6] - t264 * parameters[MZ6] + (t537 + parameters[M7] * t519);
     const wam7_real_t t570 = t265 * parameters[MX6] + t272 * parameters[MZ6] + t521;
+    /* link j6: inertia, momentum beyond */
     const wam7_real_t t571 = t259 * parameters[MY5] - t232 * parameters[MZ5] + (t18 * t569 + t22 * t570);
+    /* link j7: inertia, momentum beyond */
     const wam7_real_t t572 = t562 + parameters[M7] * t523 - (t272 * parameters[MY6] + t264 * parameters[MX6]);
+    /* link j6: inertia, momentum beyond */
     const wam7_real_t t573 = t259 * parameters[MX5] + t231 * parameters[MZ5] + t572;
-    const wam7_real_t t574 = t39 * t571 + t42 * t573;
+    const wam7_real_t t574 = t39 * t571 + t42 * t573; /* link j5: inertia, momentum beyond */
     const wam7_real_t t575 = WAM7_C(-0.045) * t574;
-    const wam7_real_t t576 = WAM7_C(-0.3) * t230;
-    const wam7_real_t t577 = t111 * t576;
+    const wam7_real_t t576 = WAM7_C(-0.3) * t230; /* link j5: velocity of its origin */
+    const wam7_real_t t577 = t111 * t576; /* link j5: inertia, momentum beyond */
+    /* link j6: inertia, momentum beyond */
     const wam7_real_t t578 = t22 * t569 - t18 * t570 - (t231 * parameters[MY5] + t232 * parameters[MX5]);
-    const wam7_real_t t579 = WAM7_C(0.3) * t578;
-    const wam7_real_t t580 = WAM7_C(0.045) * t230;
-    const wam7_real_t t581 = t116 * t580;
-    const wam7_real_t t582 = WAM7_C(0.3) * t228 + WAM7_C(-0.045) * t248;
-    const wam7_real_t t583 = t75 * t582;
+    const wam7_real_t t579 = WAM7_C(0.3) * t578; /* link j5: inertia, momentum beyond */
+    const wam7_real_t t580 = WAM7_C(0.045) * t230; /* link j5: velocity of its origin */
+    const wam7_real_t t581 = t116 * t580; /* link j5: inertia, momentum beyond */
+    const wam7_real_t t582 = WAM7_C(0.3) * t228 + WAM7_C(-0.045) * t248; /* link j5: velocity of its origin */
+    const wam7_real_t t583 = t75 * t582; /* link j5: inertia, momentum beyond */
     const wam7_real_t t584 = t579 - t575 + (t577 + t581 - t583);
     const wam7_real_t t585 = t248 * parameters[XZ4];
     const wam7_real_t t586 = t230 * parameters[XY4];
     const wam7_real_t t587 = t584 + (t553 + t568 + (t575 - t577)) - (t585 + t586);
-    const wam7_real_t t588 = t548 + t552 + (t547 - t528);
+    const wam7_real_t t588 = t548 + t552 + (t547 - t528); /* link j6: inertia, momentum beyond */
     const wam7_real_t t589 = t228 * parameters[YZ4];
+    /* link j5: inertia, momentum beyond */
     const wam7_real_t t590 = t586 + t589 - (t588 + (t579 + t581) - t584);
-    const wam7_real_t t591 = t22 * t546;
+    const wam7_real_t t591 = t22 * t546; /* link j6: inertia, momentum beyond */
     const wam7_real_t t592 = parameters[ZZ5] + t558;
     const wam7_real_t t593 = t232 * t592 - t259 * parameters[YZ5] + (t541 - t591);
     const wam7_real_t t594 = t18 * t564 - t22 * t561 - (t259 * parameters[XZ5] + t231 * t592);
+    /* link j5: inertia, momentum beyond */
     const wam7_real_t t595 = t39 * t593 + t42 * t594 + (WAM7_C(0.3) * t574 + t116 * t576);
     const wam7_real_t t596 = WAM7_C(-0.5) * (parameters[ZZ4] + (parameters[XX4] + parameters[YY4]));
     const wam7_real_t t597 = parameters[YY4] + t596;
     const wam7_real_t t598 = t248 * parameters[YZ4] + t230 * t597 + t595;
+    /* link j6: inertia, momentum beyond */
     const wam7_real_t t599 = t231 * parameters[XY5] + t232 * t565 + (t545 + t591);
     const wam7_real_t t600 = t232 * parameters[XY5] + t231 * t559 + (t22 * t556 + t18 * t557);
+    /* link j5: inertia, momentum beyond */
     const wam7_real_t t601 = t39 * t599 - t42 * t600 + (WAM7_C(-0.045) * t578 - t111 * t580);
     const wam7_real_t t602 = parameters[XX4] + t596;
     const wam7_real_t t603 = t228 * parameters[XZ4] + t230 * t602 + t601;
+    /* link j4: inertia, momentum beyond */
     const wam7_real_t t604 = t87 * (t587 - t590) + t84 * (t598 - t603);
     const wam7_real_t t605 = t87 * t604;
+    /* link j5: inertia, momentum beyond */
     const wam7_real_t t606 = t248 * parameters[MZ4] + t230 * parameters[MY4] + (t574 + t54 * t576);
     const wam7_real_t t607 = t578 + t54 * t580 - (t230 * parameters[MX4] + t228 * parameters[MZ4]);
-    const wam7_real_t t608 = t87 * t606 - t84 * t607;
+    const wam7_real_t t608 = t87 * t606 - t84 * t607; /* link j4: inertia, momentum beyond */
     const wam7_real_t t609 = WAM7_C(0.045) * t608;
-    const wam7_real_t t610 = WAM7_C(0.045) * t227;
-    const wam7_real_t t611 = t132 * t610;
-    const wam7_real_t t612 = WAM7_C(0.045) * t229;
-    const wam7_real_t t613 = t137 * t612;
+    const wam7_real_t t610 = WAM7_C(0.045) * t227; /* link j4: velocity of its origin */
+    const wam7_real_t t611 = t132 * t610; /* link j4: inertia, momentum beyond */
+    const wam7_real_t t612 = WAM7_C(0.045) * t229; /* link j4: velocity of its origin */
+    const wam7_real_t t613 = t137 * t612; /* link j4: inertia, momentum beyond */
     const wam7_real_t t614 = t613 - t611 - t609;
     const wam7_real_t t615 = t229 * parameters[XZ3];
     const wam7_real_t t616 = t227 * parameters[XY3];
     const wam7_real_t t617 = t615 - t616 + (t614 + (t590 + t605 + t609));
+    /* link j5: inertia, momentum beyond */
     const wam7_real_t t618 = t585 - t589 + (t584 + (t550 - t568 + t583));
     const wam7_real_t t619 = t225 * parameters[YZ3];
-    const wam7_real_t t620 = t616 + t619 + (t614 + (t618 + t611));
-    const wam7_real_t t621 = t42 * t567;
+    const wam7_real_t t620 = t616 + t619 + (t614 + (t618 + t611)); /* link j4: inertia, momentum beyond */
+    const wam7_real_t t621 = t42 * t567; /* link j5: inertia, momentum beyond */
     const wam7_real_t t622 = parameters[ZZ4] + t596;
     const wam7_real_t t623 = t560 + t621 - t75 * t576 - (t230 * parameters[YZ4] + t248 * t622);
     const wam7_real_t t624 = t230 * parameters[XZ4] + t228 * t622 + (t42 * t599 + t39 * t600 - t75 * t580);
     const wam7_real_t t625 = WAM7_C(-0.5) * (parameters[ZZ3] + (parameters[XX3] + parameters[YY3]));
     const wam7_real_t t626 = parameters[YY3] + t625;
+    /* link j4: inertia, momentum beyond */
     const wam7_real_t t627 = t229 * parameters[YZ3] - t227 * t626 + (t87 * t623 - t84 * t624);
-    const wam7_real_t t628 = t39 * t573 - t42 * t571;
+    const wam7_real_t t628 = t39 * t573 - t42 * t571; /* link j5: inertia, momentum beyond */
     const wam7_real_t t629 = t248 * t602 - t228 * parameters[XY4] + (t566 + t621 + (WAM7_C(0.045) * t628
         + t111 * t582));
     const wam7_real_t t630 = t39 * t594 - t42 * t593 + (WAM7_C(0.3) * t628 + t116 * t582);
     const wam7_real_t t631 = t228 * t597 - t248 * parameters[XY4] - t630;
     const wam7_real_t t632 = t248 * parameters[MX4] - t228 * parameters[MY4] + (t628 + t54 * t582);
+    /* link j4: inertia, momentum beyond */
     const wam7_real_t t633 = t87 * t629 + t84 * t631 + (WAM7_C(-0.045) * t632 - t176 * t610);
     const wam7_real_t t634 = parameters[XX3] + t625;
     const wam7_real_t t635 = t225 * parameters[XZ3] + t227 * t634 + t633;
+    /* link j3: inertia, momentum beyond */
     const wam7_real_t t636 = t130 * (t620 - t617) + t134 * (t627 + t635);
     const wam7_real_t t637 = t130 * t636;
-    const wam7_real_t t638 = WAM7_C(-0.55) * dq[1];
-    const wam7_real_t t639 = t204 * t638;
-    const wam7_real_t t640 = t84 * t606 + t87 * t607;
+    const wam7_real_t t638 = WAM7_C(-0.55) * dq[1]; /* link j3: velocity of its origin */
+    const wam7_real_t t639 = t204 * t638; /* link j3: inertia, momentum beyond */
+    const wam7_real_t t640 = t84 * t606 + t87 * t607; /* link j4: inertia, momentum beyond */
     const wam7_real_t t641 = t640 - t119 * t612 - (t225 * parameters[MY3] + t229 * parameters[MX3]);
-    const wam7_real_t t642 = WAM7_C(-0.55) * t641;
-    const wam7_real_t t643 = WAM7_C(-0.55) * t224;
-    const wam7_real_t t644 = t178 * t643;
+    const wam7_real_t t642 = WAM7_C(-0.55) * t641; /* link j3: inertia, momentum beyond */
+    const wam7_real_t t643 = WAM7_C(-0.55) * t224; /* link j3: velocity of its origin */
+    const wam7_real_t t644 = t178 * t643; /* link j3: inertia, momentum beyond */
     const wam7_real_t t645 = t642 + (t639 - t644);
     const wam7_real_t t646 = t226 * parameters[XZ2];
     const wam7_real_t t647 = dq[1] * parameters[XY2];
     const wam7_real_t t648 = t646 + t647 + (t645 + (t637 - t620 - t639));
+    /* link j4: inertia, momentum beyond */
     const wam7_real_t t649 = t615 + t619 + (t605 - t587 + t613 - t614);
     const wam7_real_t t650 = t224 * parameters[YZ2];
-    const wam7_real_t t651 = t645 + (t649 - t642) - (t647 + t650);
-    const wam7_real_t t652 = t84 * t604;
+    const wam7_real_t t651 = t645 + (t649 - t642) - (t647 + t650); /* link j3: inertia, momentum beyond */
+    const wam7_real_t t652 = t84 * t604; /* link j4: inertia, momentum beyond */
     const wam7_real_t t653 = parameters[ZZ3] + t625;
     const wam7_real_t t654 = t229 * t653 - t227 * parameters[YZ3] + (t598 - t652);
     const wam7_real_t t655 = t84 * t629 - t87 * t631 - t137 * t610 - (t227 * parameters[XZ3] + t225 * t653);
     const wam7_real_t t656 = t227 * parameters[MY3] - t229 * parameters[MZ3] + t608;
     const wam7_real_t t657 = t227 * parameters[MX3] + t225 * parameters[MZ3] + (t632 + t119 * t610);
-    const wam7_real_t t658 = t138 + t140;
+    const wam7_real_t t658 = t138 + t140; /* link j3: inertia of it and all beyond */
+    /* link j3: inertia, momentum beyond */
     const wam7_real_t t659 = WAM7_C(0.55) * (t130 * t656 + t134 * t657) - t658 * t638;
     const wam7_real_t t660 = WAM7_C(0.5) * (parameters[ZZ2] + (parameters[XX2] + parameters[YY2]));
     const wam7_real_t t661 = parameters[YY2] - t660;
     const wam7_real_t t662 = t226 * parameters[YZ2] + dq[1] * t661 + (t130 * t654 + t134 * t655 + t659);
+    /* link j4: inertia, momentum beyond */
     const wam7_real_t t663 = t225 * parameters[XY3] + t229 * t634 + (t603 + t652 + (WAM7_C(0.045) * t640
         - t176 * t612));
     const wam7_real_t t664 = t229 * parameters[XY3] + t225 * t626 + (t84 * t623 + t87 * t624 + t132 * t612);
     const wam7_real_t t665 = t660 - parameters[XX2];
+    /* link j3: inertia, momentum beyond */
     const wam7_real_t t666 = dq[1] * t665 - t224 * parameters[XZ2] + (t134 * t664 - t130 * t663);
+    /* link j2: inertia, momentum beyond */
     const wam7_real_t t667 = t189 * (t189 * (t651 - t648) + t187 * (t662 + t666));
     const wam7_real_t t668 = WAM7_C(-91.90371991247264) * parameters[FV1]
         + WAM7_C(0.10419922892570596) * (t648 + t667);
     const wam7_real_t t669 = wam7_bounded(WAM7_C(19.194) * t496);
     const wam7_real_t t670 = t210 * t496;
     const wam7_real_t t671 = wam7_bounded(WAM7_C(-12.910250000000001) * t670);
-    const wam7_real_t t672 = t134 * t636;
+    const wam7_real_t t672 = t134 * t636; /* link j3: inertia, momentum beyond */
     const wam7_real_t t673 = t224 * parameters[XY2] + t226 * t665 + (t672 - t635 - t204 * t643);
-    const wam7_real_t t674 = WAM7_C(2.0) * t673;
+    const wam7_real_t t674 = WAM7_C(2.0) * t673; /* link j2: derivatives */
+    /* link j3: inertia, momentum beyond */
     const wam7_real_t t675 = WAM7_C(0.55) * (t130 * t657 - t134 * t656) + t658 * t643;
     const wam7_real_t t676 = t226 * parameters[XY2] - t224 * t661 + (t130 * t655 - t134 * t654 + t675);
-    const wam7_real_t t677 = WAM7_C(2.0) * t676;
+    const wam7_real_t t677 = WAM7_C(2.0) * t676; /* link j2: derivatives */
     const wam7_real_t t678 = WAM7_C(0.07745783389167521) * (t187 * t674 - t189 * t677);
     const wam7_real_t t679 = t496 * (t221 + t183 * t210);
     const wam7_real_t t680 = wam7_bounded(WAM7_C(12.910250000000001) * t679);
-    const wam7_real_t t681 = WAM7_C(2.0) * t663;
+    const wam7_real_t t681 = WAM7_C(2.0) * t663; /* link j3: derivatives */
     const wam7_real_t t682 = WAM7_C(2.0) * t664;
     const wam7_real_t t683 = t134 * t682 - t130 * t681;
     const wam7_real_t t684 = WAM7_C(2.0) * t649;
-    const wam7_real_t t685 = WAM7_C(1.1) * t224;
+    const wam7_real_t t685 = WAM7_C(1.1) * t224; /* link j7: derivatives */
     const wam7_real_t t686 = WAM7_C(1.1) * dq[1];
-    const wam7_real_t t687 = t684 - (t204 * t686 - t178 * t685);
+    const wam7_real_t t687 = t684 - (t204 * t686 - t178 * t685); /* link j3: derivatives */
     const wam7_real_t t688 = WAM7_C(0.07745783389167521) * (t187 * t683 + t189 * t687);
     const wam7_real_t t689 = t172 - t106 * t183;
     const wam7_real_t t690 = t496 * (t220 + t106 * t221 - t210 * t689);
     const wam7_real_t t691 = wam7_bounded(WAM7_C(8.226) * t690);
-    const wam7_real_t t692 = WAM7_C(2.0) * t629;
+    const wam7_real_t t692 = WAM7_C(2.0) * t629; /* link j4: derivatives */
     const wam7_real_t t693 = WAM7_C(2.0) * t631;
-    const wam7_real_t t694 = WAM7_C(-0.09) * t227;
-    const wam7_real_t t695 = t87 * t692 + t84 * t693 + t118 * t694;
+    const wam7_real_t t694 = WAM7_C(-0.09) * t227; /* link j7: derivatives */
+    const wam7_real_t t695 = t87 * t692 + t84 * t693 + t118 * t694; /* link j4: derivatives */
     const wam7_real_t t696 = WAM7_C(2.0) * t618;
-    const wam7_real_t t697 = WAM7_C(0.09) * t229;
-    const wam7_real_t t698 = t696 + t137 * t697;
+    const wam7_real_t t697 = WAM7_C(0.09) * t229; /* link j7: derivatives */
+    const wam7_real_t t698 = t696 + t137 * t697; /* link j4: derivatives */
     const wam7_real_t t699 = t134 * t698 - t130 * t695 + t118 * t685;
     const wam7_real_t t700 = t87 * t693 - t84 * t692 - t137 * t694;
     const wam7_real_t t701 = t700 + (t169 * t685 - t200 * t686);
@@ -991,14 +1049,14 @@ int wam7_forward_dynamics_derivatives_standard(
     const wam7_real_t t706 = t218 + t79 * t220 + t221 * t704 + t210 * t705;
     const wam7_real_t t707 = t496 * t706;
     const wam7_real_t t708 = wam7_bounded(WAM7_C(2.23728) * t707);
-    const wam7_real_t t709 = WAM7_C(2.0) * t599;
+    const wam7_real_t t709 = WAM7_C(2.0) * t599; /* link j5: derivatives */
     const wam7_real_t t710 = WAM7_C(2.0) * t600;
-    const wam7_real_t t711 = WAM7_C(0.09) * t230;
-    const wam7_real_t t712 = t39 * t709 - t42 * t710 - t52 * t711;
+    const wam7_real_t t711 = WAM7_C(0.09) * t230; /* link j7: derivatives */
+    const wam7_real_t t712 = t39 * t709 - t42 * t710 - t52 * t711; /* link j5: derivatives */
     const wam7_real_t t713 = WAM7_C(2.0) * t588;
-    const wam7_real_t t714 = WAM7_C(-2.0) * t582;
+    const wam7_real_t t714 = WAM7_C(-2.0) * t582; /* link j7: derivatives */
     const wam7_real_t t715 = WAM7_C(0.6) * t230;
-    const wam7_real_t t716 = t713 + (t52 * t715 - t75 * t714);
+    const wam7_real_t t716 = t713 + (t52 * t715 - t75 * t714); /* link j5: derivatives */
     const wam7_real_t t717 = t87 * t712 + t84 * t716 + (t52 * t697 - t160 * t694);
     const wam7_real_t t718 = t42 * t709 + t39 * t710 - t75 * t711;
     const wam7_real_t t719 = t718 + t162 * t697;
@@ -1012,7 +1070,7 @@ int wam7_forward_dynamics_derivatives_standard(
     const wam7_real_t t727 = t217 + t34 * t218 + t220 * t724 + t221 * t725;
     const wam7_real_t t728 = t496 * (t727 + t210 * t726);
     const wam7_real_t t729 = wam7_bounded(WAM7_C(2.23728) * t728);
-    const wam7_real_t t730 = WAM7_C(2.0) * t561;
+    const wam7_real_t t730 = WAM7_C(2.0) * t561; /* link j6: derivatives */
     const wam7_real_t t731 = WAM7_C(2.0) * t564;
     const wam7_real_t t732 = t18 * t730 + t22 * t731;
     const wam7_real_t t733 = WAM7_C(2.0) * t551;
@@ -1034,7 +1092,7 @@ int wam7_forward_dynamics_derivatives_standard(
     const wam7_real_t t749 = t216 - t6 * t217 - t218 * t744 + t220 * t745;
     const wam7_real_t t750 = t496 * (t749 + t221 * t746 + t210 * t748);
     const wam7_real_t t751 = WAM7_C(1.00031) * t750;
-    const wam7_real_t t752 = WAM7_C(2.0) * t542;
+    const wam7_real_t t752 = WAM7_C(2.0) * t542; /* link j7: derivatives */
     const wam7_real_t t753 = WAM7_C(2.0) * t543;
     const wam7_real_t t754 = t2 * t752 - t1 * t753;
     const wam7_real_t t755 = WAM7_C(2.0) * t529;
@@ -1272,11 +1330,11 @@ int wam7_forward_dynamics_derivatives_standard(
     const wam7_real_t t962 = t460 + t961 + (parameters[MX3] * t896 + parameters[MY3] * t889) + (t87 * t958
         - t84 * t954 + WAM7_C(-0.045) * t960);
     const wam7_real_t t963 = t464 + parameters[YY2] * t854 + parameters[XY2] * t848 + parameters[YZ2] * t845;
-    const wam7_real_t t964 = t309 + t457;
-    const wam7_real_t t965 = WAM7_C(-2.0) * t226;
+    const wam7_real_t t964 = t309 + t457; /* link j3: motion */
+    const wam7_real_t t965 = WAM7_C(-2.0) * t226; /* link j2: derivatives */
     const wam7_real_t t966 = WAM7_C(2.0) * t224;
     const wam7_real_t t967 = t964 * t186 + (t211 * t853 + t213 * t846) - (t648 * t965 + t662 * t966);
-    const wam7_real_t t968 = t178 - parameters[MZ2];
+    const wam7_real_t t968 = t178 - parameters[MZ2]; /* link j3: inertia of it and all beyond */
     const wam7_real_t t969 = t467 + (t466 + t963) + t962 + (t303 * t968 + t967);
     const wam7_real_t t970 = t417 - parameters[XX3] * t858 + parameters[XY3] * t891 - parameters[XZ3] * t897;
     const wam7_real_t t971 = t419 + t970 + (t420 - parameters[MZ3] * t896) + (t87 * t954 + t84 * t958);
@@ -1338,28 +1396,38 @@ int wam7_forward_dynamics_derivatives_standard(
     const wam7_real_t t1018 = t834 * t992 - t835 * t995 + t836 * t997 - t837 * t999;
     const wam7_real_t t1019 = t1018 + t839 * t1002 + t840 * t1004 + t843 * t1006;
     ddq_by_q[43] = t1019;
+    /* link j2: derivatives */
     const wam7_real_t t1020 = WAM7_C(2.0) * (t646 - t650 + (t617 + t637 - t644 - t645));
     const wam7_real_t t1021 = WAM7_C(0.07745783389167521) * (t1020 + WAM7_C(2.0) * (t226 * t186
         + t224 * t188));
     const wam7_real_t t1022 = WAM7_C(61.81619256017505) * parameters[FV2] + t1021;
     const wam7_real_t t1023 = parameters[ZZ2] - t660;
+    /* link j3: inertia, momentum beyond */
     const wam7_real_t t1024 = t627 - t672 - t178 * t638 - (dq[1] * parameters[YZ2] + t226 * t1023);
+    /* link j2: derivatives */
     const wam7_real_t t1025 = t187 * (WAM7_C(2.0) * t1024 + (t213 * t966 - t211 * t965));
+    /* link j3: inertia, momentum beyond */
     const wam7_real_t t1026 = dq[1] * parameters[XZ2] + t224 * t1023 + (t134 * t663 + t130 * t664);
+    /* link j2: derivatives */
     const wam7_real_t t1027 = t189 * (WAM7_C(2.0) * t1026 + (t213 * t965 + t212 * t966));
     const wam7_real_t t1028 = WAM7_C(0.05209961446285298) * (t1025 + t1027);
+    /* link j3: derivatives */
     const wam7_real_t t1029 = t134 * t681 + t130 * t682 + WAM7_C(2.0) * (t226 * t205 + t224 * t122);
     const wam7_real_t t1030 = WAM7_C(0.07745783389167521) * t1029;
+    /* link j4: derivatives */
     const wam7_real_t t1031 = t134 * t695 + t130 * t698 + t118 * t686 + WAM7_C(2.0) * (t226 * t201
         + t224 * t103);
     const wam7_real_t t1032 = WAM7_C(0.12156576707999026) * t1031;
     const wam7_real_t t1033 = t1028 * t669 - t1022 * t671 + t1030 * t680 - t1032 * t691;
+    /* link j5: derivatives */
     const wam7_real_t t1034 = t134 * t717 + t130 * t719 - t160 * t686 + WAM7_C(2.0) * (t226 * t198
         + t224 * t88);
     const wam7_real_t t1035 = WAM7_C(0.4469713223199599) * t1034;
+    /* link j6: derivatives */
     const wam7_real_t t1036 = t134 * t737 + t130 * t739 + t152 * t686 + WAM7_C(2.0) * (t226 * t194
         + t224 * t98);
     const wam7_real_t t1037 = WAM7_C(0.4469713223199599) * t1036;
+    /* link j7: derivatives */
     const wam7_real_t t1038 = t134 * t762 + t130 * t764 + t145 * t686 + WAM7_C(2.0) * (t226 * t191
         + t224 * t93);
     const wam7_real_t t1039 = WAM7_C(0.9996900960702182) * t1038;
@@ -1390,8 +1458,8 @@ int wam7_forward_dynamics_derivatives_standard(
     ddq_by_input[29] = t810;
     ddq_by_input[36] = t824;
     ddq_by_input[43] = t835;
-    const wam7_real_t t1053 = t440 + t299;
-    const wam7_real_t t1054 = WAM7_C(2.0) * t229;
+    const wam7_real_t t1053 = t440 + t299; /* link j4: motion */
+    const wam7_real_t t1054 = WAM7_C(2.0) * t229; /* link j3: derivatives */
     const wam7_real_t t1055 = WAM7_C(2.0) * t225;
     const wam7_real_t t1056 = t635 * t1054 + t620 * t1055 - (t133 * t849 - t129 * t857 - t1053 * t174);
     const wam7_real_t t1057 = t971 + (t1056 - t138 * t896);
@@ -1483,7 +1551,7 @@ int wam7_forward_dynamics_derivatives_standard(
     ddq_by_input[30] = t811;
     ddq_by_input[37] = t825;
     ddq_by_input[44] = t836;
-    const wam7_real_t t1123 = WAM7_C(-2.0) * t248;
+    const wam7_real_t t1123 = WAM7_C(-2.0) * t248; /* link j4: derivatives */
     const wam7_real_t t1124 = WAM7_C(2.0) * t228;
     const wam7_real_t t1125 = t587 * t1123 - t598 * t1124 + (t112 * t860 - t109 * t867 - t447 * t101);
     const wam7_real_t t1126 = t958 + (t1125 + t132 * t893);
@@ -1583,7 +1651,7 @@ int wam7_forward_dynamics_derivatives_standard(
     ddq_by_input[31] = t812;
     ddq_by_input[38] = t826;
     ddq_by_input[45] = t837;
-    const wam7_real_t t1199 = WAM7_C(2.0) * t232;
+    const wam7_real_t t1199 = WAM7_C(2.0) * t232; /* link j5: derivatives */
     const wam7_real_t t1200 = WAM7_C(2.0) * t231;
     const wam7_real_t t1201 = t550 * t1199 + t560 * t1200 + (t423 * t73 + (t41 * t871 - t37 * t863));
     const wam7_real_t t1202 = t941 + (t1201 - t58 * t900);
@@ -1691,7 +1759,7 @@ int wam7_forward_dynamics_derivatives_standard(
     ddq_by_input[32] = t815;
     ddq_by_input[39] = t818;
     ddq_by_input[46] = t839;
-    const wam7_real_t t1286 = WAM7_C(2.0) * t264;
+    const wam7_real_t t1286 = WAM7_C(2.0) * t264; /* link j6: derivatives */
     const wam7_real_t t1287 = WAM7_C(2.0) * t272;
     const wam7_real_t t1288 = t545 * t1286 + t531 * t1287 - (t21 * t882 - t17 * t874 - t398 * t29);
     const wam7_real_t t1289 = t1288 + t45 * t910 - t929;
@@ -1809,7 +1877,7 @@ int wam7_forward_dynamics_derivatives_standard(
     ddq_by_input[33] = t818;
     ddq_by_input[40] = t829;
     ddq_by_input[47] = t840;
-    const wam7_real_t t1382 = WAM7_C(2.0) * t276;
+    const wam7_real_t t1382 = WAM7_C(2.0) * t276; /* link j7: derivatives */
     const wam7_real_t t1383 = WAM7_C(-2.0) * t282;
     const wam7_real_t t1384 = t509 * t1382 - t516 * t1383 - (t391 * parameters[XZ7] - (parameters[XX7] * t879
         - parameters[XY7] * t877));

@@ -6,7 +6,7 @@
  * Arm wam7, description 552353c9ea1f05cf.
  * SPDX-License-Identifier: 0BSD
  *
- * Operations: 1370 (720 mul, 650 add, 0 neg), 7 div, 12 trig, 7 other.
+ * Operations: 1370 (720 mul, 650 add, 0 neg), 7 div, 12 trig, 7 other calls (sign, select and the like).
  *
  * @param[in]   q           [7]   [rad]      joint coordinates; norm at most 10000
  * @param[in]   dq          [7]   [rad/s]    joint velocities; norm at most 100000
@@ -121,11 +121,11 @@
  */
 #include "wam7_private.h"
 
-#if WAM7_GENERATION != 0x7A21915FUL
+#if WAM7_GENERATION != 0x0E2B7B26UL
 #error "wam7.h and wam7_forward_dynamics_standard.c are of different generations: generate the arm again"
 #endif
 
-int wam7_forward_dynamics_standard(
+wam7_status_t wam7_forward_dynamics_standard(
     const wam7_real_t q[WAM7_N_JOINTS],
     const wam7_real_t dq[WAM7_N_JOINTS],
     const wam7_real_t input[WAM7_N_JOINTS],
@@ -137,7 +137,7 @@ int wam7_forward_dynamics_standard(
         XX5, XY5, XZ5, YY5, YZ5, ZZ5, MX5, MY5, MZ5, M5, XX6, XY6, XZ6, YY6, YZ6, ZZ6, MX6, MY6, MZ6, M6, XX7,
         XY7, XZ7, YY7, YZ7, ZZ7, MX7, MY7, MZ7, M7, FV1, FC1, IA1, FV2, FC2, IA2, FV3, FC3, IA3, FV4, FC4,
         IA4, FV5, FC5, IA5, FV6, FC6, IA6, FV7, FC7, IA7 };
-    int status = WAM7_STATUS_OK;
+    wam7_status_t status = WAM7_STATUS_OK;
 
     if (!wam7_within_joints(q, WAM7_C(1.0e8))
         || !wam7_within_joints(dq, WAM7_C(1.0e10))
@@ -167,11 +167,12 @@ int wam7_forward_dynamics_standard(
         wam7_zero(out, 7);
         return WAM7_STATUS_PIVOT;
     }
+    /* link j7: column of the mass matrix */
     const wam7_real_t t3 = t2 * parameters[MY7] + t1 * parameters[MX7];
     const wam7_real_t t4 = WAM7_C(0.06) * t3 - (t1 * parameters[XZ7] + t2 * parameters[YZ7]);
     const wam7_real_t t5 = WAM7_C(-1.0) / t0;
     const wam7_real_t t6 = t4 * t5;
-    const wam7_real_t t7 = parameters[YY7] - parameters[XX7];
+    const wam7_real_t t7 = parameters[YY7] - parameters[XX7]; /* link j7: inertia of it and all beyond */
     const wam7_real_t t8 = t2 * t7 + parameters[XY7] * (WAM7_C(2.0) * t1);
     const wam7_real_t t9 = t2 * t8;
     const wam7_real_t t10 = WAM7_C(0.06) * parameters[M7];
@@ -190,18 +191,20 @@ int wam7_forward_dynamics_standard(
     }
     const wam7_real_t t16 = parameters[XX6] + (parameters[YY7] - t9 + t11);
     const wam7_real_t t17 = parameters[YY6] + parameters[ZZ7];
+    /* link j7: column of the mass matrix */
     const wam7_real_t t19 = t2 * parameters[MX7] - t1 * parameters[MY7];
     const wam7_real_t t20 = t1 * parameters[YZ7] - t2 * parameters[XZ7] + WAM7_C(0.06) * t19;
-    const wam7_real_t t21 = parameters[XY6] + t20;
+    const wam7_real_t t21 = parameters[XY6] + t20; /* link j7: inertia of it and all beyond */
+    /* link j6: inertia of it and all beyond */
     const wam7_real_t t23 = t18 * (t16 - t17) + t21 * (WAM7_C(-2.0) * t22);
     const wam7_real_t t24 = t18 * t23;
     const wam7_real_t t25 = parameters[ZZ5] + (t16 - t24);
     const wam7_real_t t26 = t25 + WAM7_C(89.8704) * parameters[IA5];
-    const wam7_real_t t27 = t22 * t20 + t18 * parameters[ZZ7];
+    const wam7_real_t t27 = t22 * t20 + t18 * parameters[ZZ7]; /* link j7: column of the mass matrix */
     const wam7_real_t t28 = t27 * t5;
-    const wam7_real_t t29 = parameters[YZ6] + t4;
+    const wam7_real_t t29 = parameters[YZ6] + t4; /* link j7: inertia of it and all beyond */
     const wam7_real_t t30 = t1 * t8 - parameters[XY7] - parameters[XZ6];
-    const wam7_real_t t31 = t18 * t29 - t22 * t30;
+    const wam7_real_t t31 = t18 * t29 - t22 * t30; /* link j6: column of the mass matrix */
     const wam7_real_t t32 = t31 + t27 * t6;
     const wam7_real_t t33 = WAM7_C(1.0) / t14;
     const wam7_real_t t34 = t32 * t33;
@@ -215,40 +218,43 @@ int wam7_forward_dynamics_standard(
         wam7_zero(out, 7);
         return WAM7_STATUS_PIVOT;
     }
-    const wam7_real_t t37 = parameters[XX5] + (t17 + t24);
+    const wam7_real_t t37 = parameters[XX5] + (t17 + t24); /* link j6: inertia of it and all beyond */
     const wam7_real_t t38 = parameters[YY5] + t12;
-    const wam7_real_t t40 = t18 * t30 + t22 * t29;
-    const wam7_real_t t41 = parameters[XY5] - t40;
+    const wam7_real_t t40 = t18 * t30 + t22 * t29; /* link j6: column of the mass matrix */
+    const wam7_real_t t41 = parameters[XY5] - t40; /* link j6: inertia of it and all beyond */
+    /* link j5: inertia of it and all beyond */
     const wam7_real_t t43 = t39 * (t37 - t38) - t41 * (WAM7_C(2.0) * t42);
     const wam7_real_t t44 = t39 * t43;
+    /* link j6: inertia of it and all beyond */
     const wam7_real_t t45 = parameters[MY5] + (parameters[MZ6] + t3);
-    const wam7_real_t t46 = parameters[MX6] + t19;
+    const wam7_real_t t46 = parameters[MX6] + t19; /* link j7: inertia of it and all beyond */
     const wam7_real_t t47 = parameters[MZ7] + t10 - parameters[MY6];
-    const wam7_real_t t48 = t22 * t47 + t18 * t46;
-    const wam7_real_t t49 = parameters[MX5] + t48;
-    const wam7_real_t t50 = t39 * t49 - t42 * t45;
+    const wam7_real_t t48 = t22 * t47 + t18 * t46; /* link j6: column of the mass matrix */
+    const wam7_real_t t49 = parameters[MX5] + t48; /* link j6: inertia of it and all beyond */
+    const wam7_real_t t50 = t39 * t49 - t42 * t45; /* link j5: column of the mass matrix */
+    /* link j6: inertia of it and all beyond */
     const wam7_real_t t51 = parameters[M5] + (parameters[M6] + parameters[M7]);
-    const wam7_real_t t52 = WAM7_C(0.045) * t51;
+    const wam7_real_t t52 = WAM7_C(0.045) * t51; /* link j5: inertia of it and all beyond */
     const wam7_real_t t53 = WAM7_C(0.045) * (t52 + WAM7_C(-2.0) * t50);
-    const wam7_real_t t54 = t18 * t47 - t22 * t46;
-    const wam7_real_t t55 = parameters[MZ5] + t54;
-    const wam7_real_t t56 = WAM7_C(0.3) * t51;
+    const wam7_real_t t54 = t18 * t47 - t22 * t46; /* link j6: column of the mass matrix */
+    const wam7_real_t t55 = parameters[MZ5] + t54; /* link j6: inertia of it and all beyond */
+    const wam7_real_t t56 = WAM7_C(0.3) * t51; /* link j5: inertia of it and all beyond */
     const wam7_real_t t57 = WAM7_C(0.3) * (t56 + WAM7_C(2.0) * t55);
     const wam7_real_t t58 = parameters[ZZ4] + (t37 - t44 + (t53 + t57));
     const wam7_real_t t59 = t58 + WAM7_C(324.0) * parameters[IA4];
-    const wam7_real_t t60 = t18 * t20 - t22 * parameters[ZZ7];
+    const wam7_real_t t60 = t18 * t20 - t22 * parameters[ZZ7]; /* link j7: column of the mass matrix */
     const wam7_real_t t61 = t18 * t3;
     const wam7_real_t t62 = t39 * t61 + t42 * t19;
     const wam7_real_t t63 = t22 * t3;
     const wam7_real_t t64 = t42 * t60 + t39 * t4 + (WAM7_C(-0.045) * t63 + WAM7_C(0.3) * t62);
     const wam7_real_t t65 = t64 * t5;
-    const wam7_real_t t66 = t39 * t54;
+    const wam7_real_t t66 = t39 * t54; /* link j6: column of the mass matrix */
     const wam7_real_t t67 = t42 * t40 - t39 * t12 + (WAM7_C(0.045) * t48 + WAM7_C(-0.3) * t66);
     const wam7_real_t t68 = t67 - t64 * t6;
     const wam7_real_t t69 = t68 * t33;
-    const wam7_real_t t70 = t21 + t22 * t23 - parameters[XZ5];
+    const wam7_real_t t70 = t21 + t22 * t23 - parameters[XZ5]; /* link j6: inertia of it and all beyond */
     const wam7_real_t t71 = parameters[YZ5] - t31;
-    const wam7_real_t t72 = t39 * t45 + t42 * t49;
+    const wam7_real_t t72 = t39 * t45 + t42 * t49; /* link j5: column of the mass matrix */
     const wam7_real_t t73 = t42 * t70 - t39 * t71 + WAM7_C(0.3) * t72;
     const wam7_real_t t74 = t73 + t64 * t28 + t68 * t34;
     const wam7_real_t t75 = WAM7_C(1.0) / t35;
@@ -268,37 +274,39 @@ int wam7_forward_dynamics_standard(
     const wam7_real_t t82 = WAM7_C(0.045) * t50;
     const wam7_real_t t83 = t82 - t25;
     const wam7_real_t t85 = t84 * t83 - t81 * t80 - t82;
-    const wam7_real_t t86 = t39 * t19 - t42 * t61;
+    const wam7_real_t t86 = t39 * t19 - t42 * t61; /* link j7: column of the mass matrix */
     const wam7_real_t t87 = t39 * t60 - t42 * t4 + WAM7_C(0.3) * t86;
     const wam7_real_t t88 = WAM7_C(0.045) * t86;
     const wam7_real_t t89 = t88 - t27;
     const wam7_real_t t90 = t84 * t89 - t81 * t87 - t88;
-    const wam7_real_t t91 = t42 * t54;
+    const wam7_real_t t91 = t42 * t54; /* link j6: column of the mass matrix */
     const wam7_real_t t92 = t39 * t40 + t42 * t12 + WAM7_C(0.3) * t91;
     const wam7_real_t t93 = WAM7_C(0.045) * t91;
     const wam7_real_t t94 = t31 + t93;
     const wam7_real_t t95 = t84 * t94 - t81 * t92 - t93;
     const wam7_real_t t96 = t95 - t90 * t6;
     const wam7_real_t t97 = t85 + t90 * t28 + t96 * t34;
+    /* link j5: inertia of it and all beyond */
     const wam7_real_t t98 = parameters[XZ4] + (t41 + t42 * t43 + WAM7_C(0.045) * t72);
     const wam7_real_t t99 = parameters[YZ4] + t73;
-    const wam7_real_t t100 = t81 * t98 + t84 * t99;
+    const wam7_real_t t100 = t81 * t98 + t84 * t99; /* link j4: column of the mass matrix */
     const wam7_real_t t101 = t90 * t65 - t100 - t96 * t69 - t97 * t76;
     const wam7_real_t t102 = WAM7_C(1.0) / t77;
     const wam7_real_t t103 = t101 * t102;
     const wam7_real_t t104 = t97 * t75;
     const wam7_real_t t105 = t90 * t5;
-    const wam7_real_t t106 = parameters[XX4] + (t38 + t44 + t57);
+    const wam7_real_t t106 = parameters[XX4] + (t38 + t44 + t57); /* link j5: inertia of it and all beyond */
     const wam7_real_t t107 = parameters[YY4] + (t25 + t53);
     const wam7_real_t t108 = t50 - t52;
     const wam7_real_t t109 = parameters[XY4] + (t79 + (WAM7_C(-0.045) * t55 + WAM7_C(0.3) * t108));
+    /* link j4: inertia of it and all beyond */
     const wam7_real_t t110 = t84 * (t106 - t107) - t109 * (WAM7_C(2.0) * t81);
     const wam7_real_t t111 = t84 * t110;
-    const wam7_real_t t112 = parameters[MX4] + t108;
+    const wam7_real_t t112 = parameters[MX4] + t108; /* link j5: inertia of it and all beyond */
     const wam7_real_t t113 = t55 + t56 - parameters[MY4];
-    const wam7_real_t t114 = t81 * t113 + t84 * t112;
-    const wam7_real_t t115 = parameters[M4] + t51;
-    const wam7_real_t t116 = WAM7_C(0.045) * t115;
+    const wam7_real_t t114 = t81 * t113 + t84 * t112; /* link j4: column of the mass matrix */
+    const wam7_real_t t115 = parameters[M4] + t51; /* link j5: inertia of it and all beyond */
+    const wam7_real_t t116 = WAM7_C(0.045) * t115; /* link j4: inertia of it and all beyond */
     const wam7_real_t t117 = WAM7_C(0.045) * (t116 + WAM7_C(2.0) * t114);
     const wam7_real_t t118 = parameters[ZZ3] + (t106 - t111 + t117);
     const wam7_real_t t119 = t118 + WAM7_C(798.0625) * parameters[IA3];
@@ -316,41 +324,46 @@ int wam7_forward_dynamics_standard(
     }
     const wam7_real_t t124 = parameters[XX3] + (t107 + t111);
     const wam7_real_t t125 = parameters[YY3] + (t58 + t117);
-    const wam7_real_t t127 = t84 * t98 - t81 * t99;
-    const wam7_real_t t128 = parameters[MZ4] + t72;
+    const wam7_real_t t127 = t84 * t98 - t81 * t99; /* link j4: column of the mass matrix */
+    const wam7_real_t t128 = parameters[MZ4] + t72; /* link j5: inertia of it and all beyond */
+    /* link j4: inertia of it and all beyond */
     const wam7_real_t t129 = parameters[XY3] + (t127 + WAM7_C(-0.045) * t128);
+    /* link j3: inertia of it and all beyond */
     const wam7_real_t t131 = t126 * (t125 - t124) + t129 * (WAM7_C(2.0) * t130);
     const wam7_real_t t132 = t126 * t131;
-    const wam7_real_t t133 = t84 * t113 - t81 * t112;
+    const wam7_real_t t133 = t84 * t113 - t81 * t112; /* link j4: column of the mass matrix */
+    /* link j3: inertia of it and all beyond */
     const wam7_real_t t134 = WAM7_C(0.55) * (WAM7_C(0.55) * (parameters[M3] + t115)
         + WAM7_C(2.0) * (parameters[MZ3] + t133));
     const wam7_real_t t135 = parameters[ZZ2] + (t124 + t132 + t134) + WAM7_C(798.0625) * parameters[IA2];
-    const wam7_real_t t136 = t84 * t87 + t81 * t89;
+    const wam7_real_t t136 = t84 * t87 + t81 * t89; /* link j7: column of the mass matrix */
     const wam7_real_t t137 = t64 + WAM7_C(0.045) * (t81 * t62 + t84 * t63);
     const wam7_real_t t138 = t84 * t62 - t81 * t63;
     const wam7_real_t t139 = t130 * t136 + t126 * t137 + WAM7_C(0.55) * (t126 * t138 + t130 * t86);
     const wam7_real_t t140 = t139 * t5;
-    const wam7_real_t t141 = t84 * t92 + t81 * t94;
+    const wam7_real_t t141 = t84 * t92 + t81 * t94; /* link j6: column of the mass matrix */
     const wam7_real_t t142 = t67 + WAM7_C(-0.045) * (t81 * t66 + t84 * t48);
     const wam7_real_t t143 = t81 * t48 - t84 * t66;
     const wam7_real_t t144 = t130 * t141 + t126 * t142 + WAM7_C(0.55) * (t126 * t143 + t130 * t91);
     const wam7_real_t t145 = t144 - t139 * t6;
     const wam7_real_t t146 = t145 * t33;
-    const wam7_real_t t147 = t84 * t80 + t81 * t83;
+    const wam7_real_t t147 = t84 * t80 + t81 * t83; /* link j5: column of the mass matrix */
     const wam7_real_t t148 = t73 + WAM7_C(0.045) * (t81 * t72);
     const wam7_real_t t149 = t84 * t72;
     const wam7_real_t t150 = t130 * t147 + t126 * t148 + WAM7_C(0.55) * (t126 * t149 + t130 * t50);
     const wam7_real_t t151 = t150 + t139 * t28 + t145 * t34;
     const wam7_real_t t152 = t151 * t75;
     const wam7_real_t t153 = t135 + t139 * t140 - t145 * t146 - t151 * t152;
-    const wam7_real_t t154 = WAM7_C(-0.045) * t114 - t58;
+    const wam7_real_t t154 = WAM7_C(-0.045) * t114 - t58; /* link j4: column of the mass matrix */
     const wam7_real_t t155 = t126 * t154 - t130 * t127 + WAM7_C(-0.55) * (t126 * t133);
     const wam7_real_t t156 = t155 - t139 * t65 + t145 * t69 + t151 * t76;
     const wam7_real_t t157 = t156 * t102;
+    /* link j4: inertia of it and all beyond */
     const wam7_real_t t158 = t109 + t81 * t110 + WAM7_C(0.045) * t133 - parameters[XZ3];
     const wam7_real_t t159 = parameters[YZ3] - t100;
     const wam7_real_t t160 = parameters[MY3] + t128;
     const wam7_real_t t161 = parameters[MX3] + (t114 + t116);
+    /* link j3: column of the mass matrix */
     const wam7_real_t t162 = t130 * t158 - t126 * t159 + WAM7_C(0.55) * (t126 * t160 + t130 * t161);
     const wam7_real_t t163 = t162 - t139 * t105 + t145 * t120 + t151 * t104;
     const wam7_real_t t164 = t163 - t156 * t103;
@@ -366,25 +379,33 @@ int wam7_forward_dynamics_standard(
         wam7_zero(out, 7);
         return WAM7_STATUS_PIVOT;
     }
+    /* link j2: column of the mass matrix */
     const wam7_real_t t171 = t169 * (parameters[XZ2] + (t129 - t130 * t131)) + t170 * (parameters[YZ2]
         + t162);
+    /* link j7: column of the mass matrix */
     const wam7_real_t t172 = t130 * t137 - t126 * t136 + WAM7_C(0.55) * (t130 * t138 - t126 * t86);
     const wam7_real_t t173 = t169 * t172 + t170 * t90;
+    /* link j6: column of the mass matrix */
     const wam7_real_t t174 = t130 * t142 - t126 * t141 + WAM7_C(0.55) * (t130 * t143 - t126 * t91);
     const wam7_real_t t175 = t169 * t174 + t170 * t95 - t173 * t6;
+    /* link j5: column of the mass matrix */
     const wam7_real_t t176 = t130 * t148 - t126 * t147 + WAM7_C(0.55) * (t130 * t149 - t126 * t50);
     const wam7_real_t t177 = t169 * t176 + t170 * t85 + t173 * t28 + t175 * t34;
     const wam7_real_t t178 = t171 - t173 * t140 + t175 * t146 + t177 * t152;
+    /* link j4: column of the mass matrix */
     const wam7_real_t t179 = t126 * t127 + t130 * t154 + WAM7_C(-0.55) * (t130 * t133);
     const wam7_real_t t180 = t169 * t179 + t170 * t100 - t173 * t65 + t175 * t69;
     const wam7_real_t t181 = t180 + t177 * t76;
+    /* link j3: column of the mass matrix */
     const wam7_real_t t182 = t126 * t158 + t130 * t159 + WAM7_C(0.55) * (t126 * t161 - t130 * t160);
     const wam7_real_t t183 = t169 * t182 + t170 * t118 + t173 * t105 - t175 * t120;
     const wam7_real_t t184 = t177 * t104 - t183 - t181 * t103;
     const wam7_real_t t185 = t178 + t181 * t157 + t184 * t166;
     const wam7_real_t t186 = WAM7_C(1.0) / t167;
     const wam7_real_t t187 = t185 * t186;
+    /* link j3: inertia of it and all beyond */
     const wam7_real_t t188 = parameters[XX2] + (t125 - t132 + t134);
+    /* link j2: inertia of it and all beyond */
     const wam7_real_t t189 = t170 * (parameters[YY2] + t118 - t188) + (parameters[XY2]
         + t182) * (WAM7_C(2.0) * t169);
     const wam7_real_t t190 = parameters[ZZ1] + (t188 + t170 * t189) + WAM7_C(1764.0) * parameters[IA1];
@@ -404,57 +425,57 @@ int wam7_forward_dynamics_standard(
         wam7_zero(out, 7);
         return WAM7_STATUS_PIVOT;
     }
-    const wam7_real_t t199 = t169 * dq[0];
-    const wam7_real_t t200 = t126 * t199 - t130 * dq[1];
-    const wam7_real_t t201 = t170 * dq[0];
-    const wam7_real_t t202 = dq[2] + t201;
-    const wam7_real_t t203 = t84 * t200 + t81 * t202;
-    const wam7_real_t t204 = t130 * t199 + t126 * dq[1];
-    const wam7_real_t t205 = dq[3] + t204;
-    const wam7_real_t t206 = t39 * t203 - t42 * t205;
+    const wam7_real_t t199 = t169 * dq[0]; /* link j2: motion */
+    const wam7_real_t t200 = t126 * t199 - t130 * dq[1]; /* link j3: motion */
+    const wam7_real_t t201 = t170 * dq[0]; /* link j2: motion */
+    const wam7_real_t t202 = dq[2] + t201; /* link j3: motion */
+    const wam7_real_t t203 = t84 * t200 + t81 * t202; /* link j4: motion */
+    const wam7_real_t t204 = t130 * t199 + t126 * dq[1]; /* link j3: motion */
+    const wam7_real_t t205 = dq[3] + t204; /* link j4: motion */
+    const wam7_real_t t206 = t39 * t203 - t42 * t205; /* link j5: motion */
     const wam7_real_t t207 = t42 * t203 + t39 * t205;
     const wam7_real_t t208 = t206 * t207;
-    const wam7_real_t t209 = t200 * t204;
-    const wam7_real_t t210 = dq[1] * t199;
-    const wam7_real_t t211 = t209 - t210;
-    const wam7_real_t t212 = t204 * t202;
-    const wam7_real_t t213 = t199 * t201;
+    const wam7_real_t t209 = t200 * t204; /* link j3: motion */
+    const wam7_real_t t210 = dq[1] * t199; /* link j2: motion */
+    const wam7_real_t t211 = t209 - t210; /* link j4: motion */
+    const wam7_real_t t212 = t204 * t202; /* link j3: motion */
+    const wam7_real_t t213 = t199 * t201; /* link j2: motion */
     const wam7_real_t t214 = dq[1] * t201;
     const wam7_real_t t215 = WAM7_C(2.0) * t214;
-    const wam7_real_t t216 = t130 * t213 + t126 * t215;
+    const wam7_real_t t216 = t130 * t213 + t126 * t215; /* link j3: motion */
     const wam7_real_t t217 = t216 - t212;
-    const wam7_real_t t218 = t217 - t212;
+    const wam7_real_t t218 = t217 - t212; /* link j4: motion */
     const wam7_real_t t219 = t81 * t218 - t84 * t211;
     const wam7_real_t t220 = t203 * t205;
     const wam7_real_t t221 = t220 + t219;
-    const wam7_real_t t222 = t221 - t208;
-    const wam7_real_t t223 = t81 * t200 - t84 * t202;
+    const wam7_real_t t222 = t221 - t208; /* link j6: motion */
+    const wam7_real_t t223 = t81 * t200 - t84 * t202; /* link j4: motion */
     const wam7_real_t t224 = t203 * t223;
-    const wam7_real_t t225 = t200 * t202;
+    const wam7_real_t t225 = t200 * t202; /* link j3: motion */
     const wam7_real_t t226 = t126 * t213 - t130 * t215;
     const wam7_real_t t227 = t225 - t226;
-    const wam7_real_t t228 = t224 + t227;
-    const wam7_real_t t229 = t81 * t211 + t84 * t218;
+    const wam7_real_t t228 = t224 + t227; /* link j5: motion */
+    const wam7_real_t t229 = t81 * t211 + t84 * t218; /* link j4: motion */
     const wam7_real_t t230 = t223 * t205;
     const wam7_real_t t231 = t229 - t230;
-    const wam7_real_t t232 = t231 - t230;
+    const wam7_real_t t232 = t231 - t230; /* link j5: motion */
     const wam7_real_t t233 = t39 * t232 - t42 * t228;
     const wam7_real_t t234 = t223 - dq[4];
     const wam7_real_t t235 = t207 * t234;
     const wam7_real_t t236 = t235 + t233;
-    const wam7_real_t t237 = t235 + t236;
+    const wam7_real_t t237 = t235 + t236; /* link j6: motion */
     const wam7_real_t t238 = t18 * t237 - t22 * t222;
     const wam7_real_t t239 = t22 * t206 + t18 * t234;
     const wam7_real_t t240 = dq[5] + t207;
     const wam7_real_t t241 = t239 * t240;
     const wam7_real_t t242 = t241 - t238;
-    const wam7_real_t t243 = t241 + t242;
-    const wam7_real_t t244 = t39 * t228 + t42 * t232;
+    const wam7_real_t t243 = t241 + t242; /* link j7: motion */
+    const wam7_real_t t244 = t39 * t228 + t42 * t232; /* link j5: motion */
     const wam7_real_t t245 = t206 * t234;
     const wam7_real_t t246 = t244 - t245;
-    const wam7_real_t t247 = t22 * t234 - t18 * t206;
+    const wam7_real_t t247 = t22 * t234 - t18 * t206; /* link j6: motion */
     const wam7_real_t t248 = t247 * t239;
-    const wam7_real_t t249 = t246 - t248;
+    const wam7_real_t t249 = t246 - t248; /* link j7: motion */
     const wam7_real_t t250 = t1 * t249 + t2 * t243;
     const wam7_real_t t251 = t2 * t240 - t1 * t247;
     const wam7_real_t t252 = dq[6] - t239;
@@ -464,64 +485,66 @@ int wam7_forward_dynamics_standard(
     const wam7_real_t t256 = t2 * t247 + t1 * t240;
     const wam7_real_t t257 = t256 * t252;
     const wam7_real_t t258 = t255 - t257;
-    const wam7_real_t t259 = t258 - t257;
+    const wam7_real_t t259 = t258 - t257; /* link j7: force and moment */
     const wam7_real_t t260 = parameters[XX7] * t254 - t253 * (parameters[YY7] - parameters[ZZ7])
         + parameters[XY7] * t259;
-    const wam7_real_t t261 = t18 * t222 + t22 * t237;
+    const wam7_real_t t261 = t18 * t222 + t22 * t237; /* link j6: motion */
     const wam7_real_t t262 = t247 * t240;
     const wam7_real_t t263 = t261 - t262;
-    const wam7_real_t t264 = t256 * t251;
-    const wam7_real_t t265 = t263 - t264;
-    const wam7_real_t t266 = t251 * t251;
+    const wam7_real_t t264 = t256 * t251; /* link j7: motion */
+    const wam7_real_t t265 = t263 - t264; /* link j7: force and moment */
+    const wam7_real_t t266 = t251 * t251; /* link j7: motion */
     const wam7_real_t t267 = t252 * t252;
-    const wam7_real_t t268 = t223 * t223;
+    const wam7_real_t t268 = t223 * t223; /* link j4: motion */
     const wam7_real_t t269 = t205 * t205;
-    const wam7_real_t t270 = t268 + t269;
-    const wam7_real_t t271 = t204 * t204;
+    const wam7_real_t t270 = t268 + t269; /* link j5: motion */
+    const wam7_real_t t271 = t204 * t204; /* link j3: motion */
     const wam7_real_t t272 = t202 * t202;
-    const wam7_real_t t273 = t271 + t272;
-    const wam7_real_t t274 = WAM7_C(-9.81) * t169;
-    const wam7_real_t t275 = t274 + WAM7_C(-0.55) * t213;
+    const wam7_real_t t273 = t271 + t272; /* link j4: motion */
+    const wam7_real_t t274 = WAM7_C(-9.81) * t169; /* link j2: motion */
+    const wam7_real_t t275 = t274 + WAM7_C(-0.55) * t213; /* link j3: motion */
     const wam7_real_t t276 = WAM7_C(1.1) * t214;
     const wam7_real_t t277 = t126 * t275 + t130 * t276;
-    const wam7_real_t t278 = WAM7_C(-0.045) * t273 + t277;
+    const wam7_real_t t278 = WAM7_C(-0.045) * t273 + t277; /* link j4: motion */
     const wam7_real_t t279 = t225 + t227;
-    const wam7_real_t t280 = t199 * t199;
+    const wam7_real_t t280 = t199 * t199; /* link j2: motion */
     const wam7_real_t t281 = dq[1] * dq[1];
     const wam7_real_t t282 = WAM7_C(9.81) * t170;
-    const wam7_real_t t283 = t282 + WAM7_C(-0.55) * (t280 + t281);
-    const wam7_real_t t284 = t283 - WAM7_C(0.045) * t279;
+    const wam7_real_t t283 = t282 + WAM7_C(-0.55) * (t280 + t281); /* link j3: motion */
+    const wam7_real_t t284 = t283 - WAM7_C(0.045) * t279; /* link j4: motion */
     const wam7_real_t t285 = t84 * t278 - t81 * t284;
-    const wam7_real_t t286 = t285 + (WAM7_C(0.045) * t270 + WAM7_C(0.3) * t228);
+    const wam7_real_t t286 = t285 + (WAM7_C(0.045) * t270 + WAM7_C(0.3) * t228); /* link j5: motion */
     const wam7_real_t t287 = t220 + t221;
-    const wam7_real_t t288 = t210 + t209;
-    const wam7_real_t t289 = t130 * t275 - t126 * t276;
-    const wam7_real_t t290 = t289 + WAM7_C(0.045) * t288;
-    const wam7_real_t t291 = WAM7_C(0.045) * t287 - WAM7_C(-0.3) * t232 - t290;
+    const wam7_real_t t288 = t210 + t209; /* link j4: motion */
+    const wam7_real_t t289 = t130 * t275 - t126 * t276; /* link j3: motion */
+    const wam7_real_t t290 = t289 + WAM7_C(0.045) * t288; /* link j4: motion */
+    const wam7_real_t t291 = WAM7_C(0.045) * t287 - WAM7_C(-0.3) * t232 - t290; /* link j5: motion */
     const wam7_real_t t292 = t42 * t286 - t39 * t291;
-    const wam7_real_t t293 = t292 + WAM7_C(0.06) * t243;
-    const wam7_real_t t294 = t39 * t286 + t42 * t291;
-    const wam7_real_t t295 = t203 * t203;
-    const wam7_real_t t296 = t295 + t269;
+    const wam7_real_t t293 = t292 + WAM7_C(0.06) * t243; /* link j7: motion */
+    const wam7_real_t t294 = t39 * t286 + t42 * t291; /* link j5: motion */
+    const wam7_real_t t295 = t203 * t203; /* link j4: motion */
+    const wam7_real_t t296 = t295 + t269; /* link j5: motion */
     const wam7_real_t t297 = t227 - t224;
-    const wam7_real_t t298 = t81 * t278 + t84 * t284;
-    const wam7_real_t t299 = WAM7_C(0.3) * t296 + WAM7_C(-0.045) * t297 - t298;
-    const wam7_real_t t300 = t18 * t294 + t22 * t299;
-    const wam7_real_t t301 = t300 + WAM7_C(0.06) * t249;
+    const wam7_real_t t298 = t81 * t278 + t84 * t284; /* link j4: motion */
+    const wam7_real_t t299 = WAM7_C(0.3) * t296 + WAM7_C(-0.045) * t297 - t298; /* link j5: motion */
+    const wam7_real_t t300 = t18 * t294 + t22 * t299; /* link j6: motion */
+    const wam7_real_t t301 = t300 + WAM7_C(0.06) * t249; /* link j7: motion */
     const wam7_real_t t302 = t1 * t301 + t2 * t293;
-    const wam7_real_t t303 = t22 * t294 - t18 * t299;
+    const wam7_real_t t303 = t22 * t294 - t18 * t299; /* link j6: motion */
     const wam7_real_t t304 = t247 * t247;
     const wam7_real_t t305 = t240 * t240;
-    const wam7_real_t t306 = t304 + t305;
+    const wam7_real_t t306 = t304 + t305; /* link j7: motion */
     const wam7_real_t t307 = WAM7_C(0.06) * t306 - t303;
+    /* link j7: force and moment */
     const wam7_real_t t308 = t260 - parameters[XZ7] * t265 + (t266 - t267) * parameters[YZ7]
         - (parameters[MY7] * t307 - parameters[MZ7] * t302);
     const wam7_real_t t309 = t253 + t254;
     const wam7_real_t t310 = parameters[YY7] * t258 + t257 * (parameters[XX7] - parameters[ZZ7])
         + parameters[XY7] * t309;
     const wam7_real_t t311 = t264 + t263;
-    const wam7_real_t t312 = t256 * t256;
+    const wam7_real_t t312 = t256 * t256; /* link j7: motion */
     const wam7_real_t t313 = t1 * t293 - t2 * t301;
+    /* link j7: force and moment */
     const wam7_real_t t314 = parameters[YZ7] * t311 - t310 + (t312 - t267) * parameters[XZ7]
         + (parameters[MZ7] * t313 - parameters[MX7] * t307);
     const wam7_real_t t315 = (t266 + t267) * parameters[MX7] - parameters[MY7] * t311
@@ -530,159 +553,203 @@ int wam7_forward_dynamics_standard(
     const wam7_real_t t317 = parameters[MX7] * t265 + (t312 + t267) * parameters[MY7]
         + parameters[MZ7] * t250;
     const wam7_real_t t318 = parameters[M7] * t302 + t317;
-    const wam7_real_t t319 = t1 * t316 + t2 * t318;
-    const wam7_real_t t320 = t263 - t262;
+    const wam7_real_t t319 = t1 * t316 + t2 * t318; /* link j7: what it passes on */
+    const wam7_real_t t320 = t263 - t262; /* link j7: motion */
+    /* link j6: force and moment */
     const wam7_real_t t321 = parameters[XX6] * t242 + t241 * (parameters[ZZ6] - parameters[YY6])
         + parameters[XY6] * t320;
-    const wam7_real_t t322 = t248 + t246;
-    const wam7_real_t t323 = t239 * t239;
+    const wam7_real_t t322 = t248 + t246; /* link j7: motion */
+    const wam7_real_t t323 = t239 * t239; /* link j6: motion */
+    /* link j6: force and moment */
     const wam7_real_t t324 = t321 + parameters[XZ6] * t322 + (t323 - t305) * parameters[YZ6]
         + (parameters[MZ6] * t303 - parameters[MY6] * t292);
+    /* link j7: what it passes on */
     const wam7_real_t t325 = t324 + (t2 * t308 + t1 * t314 + WAM7_C(0.06) * t319);
+    /* link j6: force and moment */
     const wam7_real_t t326 = parameters[YY6] * t263 - t262 * (parameters[ZZ6] - parameters[XX6])
         + parameters[XY6] * t243;
     const wam7_real_t t327 = t326 + parameters[YZ6] * t249 + (t305 - t304) * parameters[XZ6]
         + (parameters[MZ6] * t300 + parameters[MX6] * t292);
+    /* link j7: force and moment */
     const wam7_real_t t328 = parameters[ZZ7] * t263 - t264 * t7 - parameters[YZ7] * t255
         - parameters[XZ7] * t250;
     const wam7_real_t t329 = t328 + (t266 - t312) * parameters[XY7] + (parameters[MX7] * t302
         - parameters[MY7] * t313);
-    const wam7_real_t t330 = t327 + t329;
-    const wam7_real_t t331 = t246 - t245;
+    const wam7_real_t t330 = t327 + t329; /* link j7: what it passes on */
+    const wam7_real_t t331 = t246 - t245; /* link j6: motion */
+    /* link j5: force and moment */
     const wam7_real_t t332 = t235 * (parameters[YY5] - parameters[ZZ5]) - parameters[XX5] * t236
         + parameters[XY5] * t331;
-    const wam7_real_t t333 = t208 + t221;
-    const wam7_real_t t334 = t207 * t207;
+    const wam7_real_t t333 = t208 + t221; /* link j6: motion */
+    const wam7_real_t t334 = t207 * t207; /* link j5: motion */
     const wam7_real_t t335 = t234 * t234;
+    /* link j5: force and moment */
     const wam7_real_t t336 = t332 - parameters[XZ5] * t333 + (t334 - t335) * parameters[YZ5]
         - (parameters[MY5] * t299 - parameters[MZ5] * t292);
-    const wam7_real_t t337 = t336 + (t18 * t325 - t22 * t330);
-    const wam7_real_t t338 = t2 * t316 - t1 * t318;
+    const wam7_real_t t337 = t336 + (t18 * t325 - t22 * t330); /* link j6: what it passes on */
+    const wam7_real_t t338 = t2 * t316 - t1 * t318; /* link j7: what it passes on */
+    /* link j6: force and moment */
     const wam7_real_t t339 = parameters[ZZ6] * t246 + t248 * (parameters[YY6] - parameters[XX6])
         + parameters[YZ6] * t261;
     const wam7_real_t t340 = parameters[XZ6] * t238 - t339 + (t323 - t304) * parameters[XY6]
         + (parameters[MX6] * t303 + parameters[MY6] * t300);
+    /* link j7: what it passes on */
     const wam7_real_t t341 = t340 + (t2 * t314 - t1 * t308 + WAM7_C(0.06) * t338);
+    /* link j5: force and moment */
     const wam7_real_t t342 = parameters[XY5] * t237 - (parameters[YY5] * t246 + t245 * (parameters[XX5]
         - parameters[ZZ5]));
-    const wam7_real_t t343 = t206 * t206;
+    const wam7_real_t t343 = t206 * t206; /* link j5: motion */
+    /* link j5: force and moment */
     const wam7_real_t t344 = t342 + parameters[YZ5] * t222 + (t343 - t335) * parameters[XZ5]
         - (parameters[MZ5] * t294 + parameters[MX5] * t299);
-    const wam7_real_t t345 = t344 + t341;
+    const wam7_real_t t345 = t344 + t341; /* link j6: what it passes on */
+    /* link j6: force and moment */
     const wam7_real_t t346 = (t323 + t305) * parameters[MX6] + parameters[MY6] * t249
         - parameters[MZ6] * t261;
-    const wam7_real_t t347 = t346 - parameters[M6] * t300 + t338;
+    const wam7_real_t t347 = t346 - parameters[M6] * t300 + t338; /* link j7: what it passes on */
+    /* link j6: force and moment */
     const wam7_real_t t348 = parameters[MX6] * t322 - t306 * parameters[MY6] + parameters[MZ6] * t238
         - parameters[M6] * t303;
+    /* link j7: force and moment */
     const wam7_real_t t349 = parameters[MX7] * t259 - parameters[MY7] * t309 + (t312
         + t266) * parameters[MZ7];
-    const wam7_real_t t350 = t348 + (parameters[M7] * t307 + t349);
+    const wam7_real_t t350 = t348 + (parameters[M7] * t307 + t349); /* link j7: what it passes on */
+    /* link j5: force and moment */
     const wam7_real_t t351 = (t334 + t335) * parameters[MX5] - parameters[MY5] * t222
         - parameters[MZ5] * t244;
+    /* link j6: what it passes on */
     const wam7_real_t t352 = t351 - parameters[M5] * t294 + (t18 * t347 + t22 * t350);
+    /* link j6: force and moment */
     const wam7_real_t t353 = parameters[MX6] * t320 - parameters[MY6] * t243 + (t304
         + t323) * parameters[MZ6];
+    /* link j5: force and moment */
     const wam7_real_t t354 = parameters[MX5] * t333 + (t343 + t335) * parameters[MY5]
         - parameters[MZ5] * t233;
+    /* link j6: what it passes on */
     const wam7_real_t t355 = parameters[M5] * t292 + t354 + (parameters[M6] * t292 + t353 + t319);
-    const wam7_real_t t356 = t42 * t352 + t39 * t355;
+    const wam7_real_t t356 = t42 * t352 + t39 * t355; /* link j5: what it passes on */
+    /* link j4: force and moment */
     const wam7_real_t t357 = t230 * (parameters[ZZ4] - parameters[YY4]) - parameters[XX4] * t231
         + parameters[XY4] * t287;
     const wam7_real_t t358 = t357 + parameters[XZ4] * t297 + (t268 - t269) * parameters[YZ4]
         + (parameters[MZ4] * t298 - parameters[MY4] * t290);
+    /* link j5: what it passes on */
     const wam7_real_t t359 = t358 + (t39 * t337 + t42 * t345 + WAM7_C(0.3) * t356);
+    /* link j5: force and moment */
     const wam7_real_t t360 = parameters[ZZ5] * t221 + t208 * (parameters[YY5] - parameters[XX5])
         - parameters[YZ5] * t244;
     const wam7_real_t t361 = t360 + parameters[XZ5] * t233 + (t334 - t343) * parameters[XY5]
         + (parameters[MX5] * t292 + parameters[MY5] * t294);
-    const wam7_real_t t362 = t361 + (t22 * t325 + t18 * t330);
+    const wam7_real_t t362 = t361 + (t22 * t325 + t18 * t330); /* link j6: what it passes on */
+    /* link j4: force and moment */
     const wam7_real_t t363 = parameters[YY4] * t221 + t220 * (parameters[ZZ4] - parameters[XX4])
         - parameters[XY4] * t232;
     const wam7_real_t t364 = t363 + parameters[YZ4] * t228 + (t269 - t295) * parameters[XZ4]
         + (parameters[MZ4] * t285 + parameters[MX4] * t290);
-    const wam7_real_t t365 = t364 + (t362 + WAM7_C(-0.045) * t356);
+    const wam7_real_t t365 = t364 + (t362 + WAM7_C(-0.045) * t356); /* link j5: what it passes on */
+    /* link j3: force and moment */
     const wam7_real_t t366 = parameters[XY3] * t279 - (parameters[XX3] * t217 + t212 * (parameters[YY3]
         - parameters[ZZ3]));
     const wam7_real_t t367 = t366 - parameters[XZ3] * t288 + (t271 - t272) * parameters[YZ3]
         + (t283 * parameters[MY3] + parameters[MZ3] * t289);
-    const wam7_real_t t368 = t367 + (t84 * t359 - t81 * t365);
-    const wam7_real_t t369 = t39 * t352 - t42 * t355;
+    const wam7_real_t t368 = t367 + (t84 * t359 - t81 * t365); /* link j4: what it passes on */
+    const wam7_real_t t369 = t39 * t352 - t42 * t355; /* link j5: what it passes on */
+    /* link j5: force and moment */
     const wam7_real_t t370 = parameters[MX5] * t331 + parameters[MY5] * t237 + (t343
         + t334) * parameters[MZ5];
+    /* link j6: what it passes on */
     const wam7_real_t t371 = parameters[M5] * t299 + t370 + (t18 * t350 - t22 * t347);
+    /* link j5: what it passes on */
     const wam7_real_t t372 = t39 * t345 - t42 * t337 + (WAM7_C(0.045) * t371 + WAM7_C(0.3) * t369);
+    /* link j4: force and moment */
     const wam7_real_t t373 = t224 * (parameters[YY4] - parameters[XX4]) - parameters[ZZ4] * t227
         - parameters[YZ4] * t219;
     const wam7_real_t t374 = t373 + parameters[XZ4] * t229 + (t268 - t295) * parameters[XY4]
         + (parameters[MX4] * t298 + parameters[MY4] * t285);
-    const wam7_real_t t375 = t374 + t372;
+    const wam7_real_t t375 = t374 + t372; /* link j5: what it passes on */
+    /* link j4: force and moment */
     const wam7_real_t t376 = t270 * parameters[MX4] + parameters[MY4] * t228 - parameters[MZ4] * t219
         - parameters[M4] * t285;
-    const wam7_real_t t377 = t376 + t369;
+    const wam7_real_t t377 = t376 + t369; /* link j5: what it passes on */
+    /* link j4: force and moment */
     const wam7_real_t t378 = parameters[M4] * t298 + (t296 * parameters[MY4] - parameters[MX4] * t297
         - parameters[MZ4] * t229);
-    const wam7_real_t t379 = t371 - t378;
+    const wam7_real_t t379 = t371 - t378; /* link j5: what it passes on */
+    /* link j3: force and moment */
     const wam7_real_t t380 = t225 * (parameters[XX3] - parameters[ZZ3]) - parameters[YY3] * t227
         + parameters[XY3] * t218;
-    const wam7_real_t t381 = t200 * t200;
+    const wam7_real_t t381 = t200 * t200; /* link j3: motion */
+    /* link j3: force and moment */
     const wam7_real_t t382 = t380 - parameters[YZ3] * t211 + (t381 - t272) * parameters[XZ3]
         + (t283 * parameters[MX3] - parameters[MZ3] * t277);
+    /* link j4: what it passes on */
     const wam7_real_t t383 = t382 + (t375 + WAM7_C(0.045) * (t81 * t377 - t84 * t379));
+    /* link j3: force and moment */
     const wam7_real_t t384 = t273 * parameters[MX3] + parameters[MY3] * t211 + parameters[MZ3] * t226
         - parameters[M3] * t277;
-    const wam7_real_t t385 = t384 + (t84 * t377 + t81 * t379);
+    const wam7_real_t t385 = t384 + (t84 * t377 + t81 * t379); /* link j4: what it passes on */
+    /* link j4: force and moment */
     const wam7_real_t t386 = parameters[MX4] * t287 + parameters[MY4] * t232 + (t295
         + t268) * parameters[MZ4];
-    const wam7_real_t t387 = parameters[M4] * t290 + t386 + t356;
+    const wam7_real_t t387 = parameters[M4] * t290 + t386 + t356; /* link j5: what it passes on */
+    /* link j3: force and moment */
     const wam7_real_t t388 = parameters[MX3] * t288 + (t381 + t272) * parameters[MY3]
         - parameters[MZ3] * t216;
-    const wam7_real_t t389 = parameters[M3] * t289 + t388 + t387;
+    const wam7_real_t t389 = parameters[M3] * t289 + t388 + t387; /* link j4: what it passes on */
+    /* link j3: what it passes on */
     const wam7_real_t t390 = t126 * t368 + t130 * t383 + WAM7_C(0.55) * (t130 * t385 + t126 * t389);
+    /* link j2: force and moment */
     const wam7_real_t t391 = t214 * (parameters[YY2] - parameters[ZZ2]) - t214 * parameters[XX2]
         + WAM7_C(2.0) * t210 * parameters[XY2];
-    const wam7_real_t t392 = t201 * t201;
+    const wam7_real_t t392 = t201 * t201; /* link j2: motion */
+    /* link j2: force and moment */
     const wam7_real_t t393 = t391 + t213 * parameters[XZ2] + (t392 - t281) * parameters[YZ2]
         + t282 * parameters[MZ2];
+    /* link j3: force and moment */
     const wam7_real_t t394 = t210 * parameters[ZZ3] + t209 * (parameters[YY3] - parameters[XX3])
         + parameters[YZ3] * t226;
     const wam7_real_t t395 = t394 + parameters[XZ3] * t216 + (t271 - t381) * parameters[XY3]
         + (parameters[MX3] * t289 + parameters[MY3] * t277);
+    /* link j4: what it passes on */
     const wam7_real_t t396 = t395 + (t81 * t359 + t84 * t365 + WAM7_C(0.045) * t387);
+    /* link j2: force and moment */
     const wam7_real_t t397 = t210 * parameters[YY2] + t210 * (parameters[ZZ2] - parameters[XX2])
         - t215 * parameters[XY2];
     const wam7_real_t t398 = t397 - t213 * parameters[YZ2] + (t281 - t280) * parameters[XZ2]
         + t274 * parameters[MZ2];
-    const wam7_real_t t399 = wam7_sign(dq[0]);
+    const wam7_real_t t399 = wam7_sign(dq[0]); /* joint j1: coulomb_friction */
     const wam7_real_t t400 = WAM7_C(42.0) * (WAM7_C(-42.0) * dq[0] * parameters[FV1] - t399 * parameters[FC1])
         + (t169 * (t393 + t390) + t170 * (t398 + t396));
-    const wam7_real_t t401 = wam7_sign(dq[6]);
+    const wam7_real_t t401 = wam7_sign(dq[6]); /* joint j7: coulomb_friction */
     const wam7_real_t t402 = WAM7_C(14.93) * (WAM7_C(-14.93) * dq[6] * parameters[FV7]
         - t401 * parameters[FC7]) + t329;
     const wam7_real_t t403 = WAM7_C(1.00031) * input[6] + t402;
-    const wam7_real_t t404 = wam7_sign(dq[5]);
+    const wam7_real_t t404 = wam7_sign(dq[5]); /* joint j6: coulomb_friction */
     const wam7_real_t t405 = WAM7_C(9.48) * (WAM7_C(-9.48) * dq[5] * parameters[FV6] - t404 * parameters[FC6])
         + t341;
     const wam7_real_t t406 = WAM7_C(2.23728) * input[5] + t405 - t403 * t6;
     const wam7_real_t t407 = WAM7_C(19.194) * input[0] + t400 - t403 * t191 + t406 * t192;
-    const wam7_real_t t408 = wam7_sign(dq[4]);
+    const wam7_real_t t408 = wam7_sign(dq[4]); /* joint j5: coulomb_friction */
     const wam7_real_t t409 = WAM7_C(9.48) * (WAM7_C(-9.48) * dq[4] * parameters[FV5] - t408 * parameters[FC5])
         + t362;
     const wam7_real_t t410 = WAM7_C(2.23728) * input[4] + t409 + t403 * t28 + t406 * t34;
-    const wam7_real_t t411 = wam7_sign(dq[3]);
+    const wam7_real_t t411 = wam7_sign(dq[3]); /* joint j4: coulomb_friction */
     const wam7_real_t t412 = WAM7_C(18.0) * (WAM7_C(-18.0) * dq[3] * parameters[FV4] - t411 * parameters[FC4])
         + t375;
     const wam7_real_t t413 = WAM7_C(8.226) * input[3] + t412 - t403 * t65 + t406 * t69;
     const wam7_real_t t414 = t413 + t410 * t76;
-    const wam7_real_t t415 = wam7_sign(dq[2]);
+    const wam7_real_t t415 = wam7_sign(dq[2]); /* joint j3: coulomb_friction */
     const wam7_real_t t416 = WAM7_C(28.25) * (WAM7_C(-28.25) * dq[2] * parameters[FV3]
         - t415 * parameters[FC3]) + t396;
     const wam7_real_t t417 = WAM7_C(12.910250000000001) * input[2] + t416 - t403 * t105 + t406 * t120;
     const wam7_real_t t418 = t417 + t410 * t104 - t414 * t103;
     const wam7_real_t t419 = t407 + t410 * t193 + t414 * t195 + t418 * t196;
+    /* link j3: what it passes on */
     const wam7_real_t t420 = t126 * t383 - t130 * t368 + WAM7_C(0.55) * (t126 * t385 - t130 * t389);
+    /* link j2: force and moment */
     const wam7_real_t t421 = t213 * (parameters[XX2] - parameters[YY2]) + (t392 - t280) * parameters[XY2]
         + (t282 * parameters[MX2] + t274 * parameters[MY2]);
-    const wam7_real_t t422 = wam7_sign(dq[1]);
+    const wam7_real_t t422 = wam7_sign(dq[1]); /* joint j2: coulomb_friction */
     const wam7_real_t t423 = WAM7_C(28.25) * (WAM7_C(-28.25) * dq[1] * parameters[FV2]
         - t422 * parameters[FC2]) + (t421 + t420);
     const wam7_real_t t424 = WAM7_C(12.910250000000001) * input[1] + t423 - t403 * t140 + t406 * t146;

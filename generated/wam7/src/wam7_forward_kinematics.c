@@ -30,15 +30,15 @@
  */
 #include "wam7_private.h"
 
-#if WAM7_GENERATION != 0x7A21915FUL
+#if WAM7_GENERATION != 0x0E2B7B26UL
 #error "wam7.h and wam7_forward_kinematics.c are of different generations: generate the arm again"
 #endif
 
-int wam7_forward_kinematics(
+wam7_status_t wam7_forward_kinematics(
     const wam7_real_t q[WAM7_N_JOINTS],
     wam7_real_t out[16 * WAM7_N_LINKS])
 {
-    int status = WAM7_STATUS_OK;
+    wam7_status_t status = WAM7_STATUS_OK;
 
     if (!wam7_within_joints(q, WAM7_C(1.0e8))) {
         status |= WAM7_STATUS_INPUT;
@@ -68,7 +68,7 @@ int wam7_forward_kinematics(
     out[5] = t0;
     out[10] = WAM7_C(1.0);
     out[15] = WAM7_C(1.0);
-    const wam7_real_t t3 = t0 * t2;
+    const wam7_real_t t3 = t0 * t2; /* link j2: pose */
     out[16] = t3;
     const wam7_real_t t5 = t0 * t4;
     out[17] = -t5;
@@ -81,7 +81,7 @@ int wam7_forward_kinematics(
     out[24] = -t4;
     out[25] = -t2;
     out[31] = WAM7_C(1.0);
-    const wam7_real_t t10 = t8 * t3 - t1 * t9;
+    const wam7_real_t t10 = t8 * t3 - t1 * t9; /* link j3: pose */
     out[32] = t10;
     const wam7_real_t t11 = t9 * t3 + t1 * t8;
     out[33] = -t11;
@@ -95,15 +95,15 @@ int wam7_forward_kinematics(
     out[38] = t7;
     const wam7_real_t t15 = WAM7_C(0.55) * t7;
     out[39] = t15;
-    const wam7_real_t t16 = t4 * t8;
+    const wam7_real_t t16 = t4 * t8; /* link j3: velocities by those of the joints */
     out[40] = -t16;
     const wam7_real_t t17 = t4 * t9;
     out[41] = t17;
     out[42] = t2;
-    const wam7_real_t t18 = WAM7_C(0.55) * t2;
+    const wam7_real_t t18 = WAM7_C(0.55) * t2; /* link j3: pose */
     out[43] = t18;
     out[47] = WAM7_C(1.0);
-    const wam7_real_t t21 = t19 * t10 - t20 * t5;
+    const wam7_real_t t21 = t19 * t10 - t20 * t5; /* link j4: pose */
     out[48] = t21;
     const wam7_real_t t22 = t20 * t10 + t19 * t5;
     out[49] = -t22;
@@ -117,15 +117,15 @@ int wam7_forward_kinematics(
     out[54] = t14;
     const wam7_real_t t26 = t15 + WAM7_C(0.045) * t13;
     out[55] = t26;
-    const wam7_real_t t27 = t19 * t16 + t2 * t20;
+    const wam7_real_t t27 = t19 * t16 + t2 * t20; /* link j4: velocities by those of the joints */
     out[56] = -t27;
     const wam7_real_t t28 = t2 * t19 - t20 * t16;
     out[57] = -t28;
     out[58] = t17;
-    const wam7_real_t t29 = t18 + WAM7_C(-0.045) * t16;
+    const wam7_real_t t29 = t18 + WAM7_C(-0.045) * t16; /* link j4: pose */
     out[59] = t29;
     out[63] = WAM7_C(1.0);
-    const wam7_real_t t32 = t30 * t21 - t31 * t11;
+    const wam7_real_t t32 = t30 * t21 - t31 * t11; /* link j5: pose */
     out[64] = t32;
     const wam7_real_t t33 = t31 * t21 + t30 * t11;
     out[65] = -t33;
@@ -139,15 +139,15 @@ int wam7_forward_kinematics(
     out[70] = t25;
     const wam7_real_t t37 = t26 + (WAM7_C(-0.045) * t24 + WAM7_C(0.3) * t25);
     out[71] = t37;
-    const wam7_real_t t38 = t31 * t17 - t30 * t27;
+    const wam7_real_t t38 = t31 * t17 - t30 * t27; /* link j5: velocities by those of the joints */
     out[72] = t38;
     const wam7_real_t t39 = t31 * t27 + t30 * t17;
     out[73] = t39;
     out[74] = t28;
-    const wam7_real_t t40 = t29 + (WAM7_C(0.045) * t27 + WAM7_C(0.3) * t28);
+    const wam7_real_t t40 = t29 + (WAM7_C(0.045) * t27 + WAM7_C(0.3) * t28); /* link j5: pose */
     out[75] = t40;
     out[79] = WAM7_C(1.0);
-    const wam7_real_t t43 = t41 * t32 - t42 * t22;
+    const wam7_real_t t43 = t41 * t32 - t42 * t22; /* link j6: pose */
     out[80] = t43;
     const wam7_real_t t44 = t42 * t32 + t41 * t22;
     out[81] = -t44;
@@ -159,7 +159,7 @@ int wam7_forward_kinematics(
     out[85] = -t46;
     out[86] = t36;
     out[87] = t37;
-    const wam7_real_t t47 = t41 * t38 - t42 * t28;
+    const wam7_real_t t47 = t41 * t38 - t42 * t28; /* link j6: velocities by those of the joints */
     out[88] = t47;
     const wam7_real_t t48 = t42 * t38 + t41 * t28;
     out[89] = -t48;

@@ -89,11 +89,11 @@
  */
 #include "wam7_private.h"
 
-#if WAM7_GENERATION != 0x7A21915FUL
+#if WAM7_GENERATION != 0x0E2B7B26UL
 #error "wam7.h and wam7_gravity.c are of different generations: generate the arm again"
 #endif
 
-int wam7_gravity(
+wam7_status_t wam7_gravity(
     const wam7_real_t q[WAM7_N_JOINTS],
     const wam7_real_t parameters[WAM7_N_PARAMETERS],
     wam7_real_t out[WAM7_N_JOINTS])
@@ -102,7 +102,7 @@ int wam7_gravity(
         XZ4, YZ4, ZZ4R, MX4R, MY4R, XX5R, XY5, XZ5, YZ5, ZZ5R, MX5, MY5R, XX6R, XY6, XZ6, YZ6, ZZ6R, MX6,
         MY6R, XX7R, XY7, XZ7R, YZ7R, ZZ7, MX7, MY7, FV1, FC1, FV2, FC2, FV3, FC3, IA3, FV4, FC4, IA4, FV5,
         FC5, IA5, FV6, FC6, IA6, FV7, FC7, IA7 };
-    int status = WAM7_STATUS_OK;
+    wam7_status_t status = WAM7_STATUS_OK;
 
     if (!wam7_within_joints(q, WAM7_C(1.0e8))
         || !WAM7_PARAMETERS_USABLE(wam7_within(parameters, 62, WAM7_C(1.0e18)))) {
@@ -125,34 +125,39 @@ int wam7_gravity(
     WAM7_SINCOS(q[5], &t14, &t16);
     wam7_real_t t21, t19;
     WAM7_SINCOS(q[6], &t21, &t19);
-    const wam7_real_t t1 = WAM7_C(9.81) * t0;
-    const wam7_real_t t3 = t2 * t1;
-    const wam7_real_t t6 = WAM7_C(-9.81) * t5;
-    const wam7_real_t t8 = t4 * t3 - t7 * t6;
-    const wam7_real_t t11 = t10 * t1;
-    const wam7_real_t t13 = t9 * t8 - t12 * t11;
-    const wam7_real_t t15 = t7 * t3 + t4 * t6;
-    const wam7_real_t t17 = t14 * t13 + t16 * t15;
-    const wam7_real_t t18 = parameters[MY7] * t17;
+    const wam7_real_t t1 = WAM7_C(9.81) * t0; /* link j2: motion */
+    const wam7_real_t t3 = t2 * t1; /* link j3: motion */
+    const wam7_real_t t6 = WAM7_C(-9.81) * t5; /* link j2: motion */
+    const wam7_real_t t8 = t4 * t3 - t7 * t6; /* link j4: motion */
+    const wam7_real_t t11 = t10 * t1; /* link j3: motion */
+    const wam7_real_t t13 = t9 * t8 - t12 * t11; /* link j5: motion */
+    const wam7_real_t t15 = t7 * t3 + t4 * t6; /* link j4: motion */
+    const wam7_real_t t17 = t14 * t13 + t16 * t15; /* link j6: motion */
+    const wam7_real_t t18 = parameters[MY7] * t17; /* link j7: force and moment */
     const wam7_real_t t20 = parameters[MX7] * t17;
-    const wam7_real_t t22 = t12 * t8 + t9 * t11;
-    const wam7_real_t t23 = t19 * t18 + t21 * t20 - parameters[MY6R] * t22;
-    const wam7_real_t t24 = t16 * t13 - t14 * t15;
+    const wam7_real_t t22 = t12 * t8 + t9 * t11; /* link j5: motion */
+    const wam7_real_t t23 = t19 * t18 + t21 * t20 - parameters[MY6R] * t22; /* link j7: what it passes on */
+    const wam7_real_t t24 = t16 * t13 - t14 * t15; /* link j6: motion */
+    /* link j7: force and moment */
     const wam7_real_t t25 = parameters[MX7] * (t21 * t24 + t19 * t22) + parameters[MY7] * (t19 * t24
         - t21 * t22);
-    const wam7_real_t t26 = parameters[MX6] * t22 + t25;
-    const wam7_real_t t27 = parameters[MY5R] * t15 - (t14 * t26 - t16 * t23);
+    const wam7_real_t t26 = parameters[MX6] * t22 + t25; /* link j7: what it passes on */
+    const wam7_real_t t27 = parameters[MY5R] * t15 - (t14 * t26 - t16 * t23); /* link j6: what it passes on */
+    /* link j7: what it passes on */
     const wam7_real_t t28 = parameters[MX6] * t17 + parameters[MY6R] * t24 + (t19 * t20 - t21 * t18);
-    const wam7_real_t t29 = parameters[MX5] * t15 + t28;
-    const wam7_real_t t30 = t9 * t27 + t12 * t29 - parameters[MY4R] * t11;
+    const wam7_real_t t29 = parameters[MX5] * t15 + t28; /* link j6: what it passes on */
+    const wam7_real_t t30 = t9 * t27 + t12 * t29 - parameters[MY4R] * t11; /* link j5: what it passes on */
+    /* link j6: what it passes on */
     const wam7_real_t t31 = parameters[MX5] * t22 + parameters[MY5R] * t13 + (t14 * t23 + t16 * t26);
-    const wam7_real_t t32 = parameters[MX4R] * t11 + t31;
-    const wam7_real_t t33 = t7 * t32 - t4 * t30 - parameters[MY3R] * t6;
+    const wam7_real_t t32 = parameters[MX4R] * t11 + t31; /* link j5: what it passes on */
+    const wam7_real_t t33 = t7 * t32 - t4 * t30 - parameters[MY3R] * t6; /* link j4: what it passes on */
+    /* link j5: what it passes on */
     const wam7_real_t t34 = parameters[MX4R] * t15 + parameters[MY4R] * t8 + (t9 * t29 - t12 * t27);
-    const wam7_real_t t35 = parameters[MX3R] * t6 + t34;
+    const wam7_real_t t35 = parameters[MX3R] * t6 + t34; /* link j4: what it passes on */
     const wam7_real_t t36 = parameters[MX3R] * t11 + parameters[MY3R] * t3 + (t7 * t30 + t4 * t32);
-    const wam7_real_t t37 = t0 * (t10 * t35 - t2 * t33) + t5 * t36;
+    const wam7_real_t t37 = t0 * (t10 * t35 - t2 * t33) + t5 * t36; /* link j2: what it passes on */
     out[0] = WAM7_C(0.05209961446285298) * t37;
+    /* link j3: what it passes on */
     const wam7_real_t t38 = parameters[MX2] * t6 + parameters[MY2R] * t1 + (t10 * t33 + t2 * t35);
     out[1] = WAM7_C(0.07745783389167521) * t38;
     out[2] = WAM7_C(0.07745783389167521) * t36;

@@ -118,11 +118,11 @@
  */
 #include "wam7_private.h"
 
-#if WAM7_GENERATION != 0x7A21915FUL
+#if WAM7_GENERATION != 0x0E2B7B26UL
 #error "wam7.h and wam7_gravity_standard.c are of different generations: generate the arm again"
 #endif
 
-int wam7_gravity_standard(
+wam7_status_t wam7_gravity_standard(
     const wam7_real_t q[WAM7_N_JOINTS],
     const wam7_real_t parameters[WAM7_N_STANDARD_PARAMETERS],
     wam7_real_t out[WAM7_N_JOINTS])
@@ -132,7 +132,7 @@ int wam7_gravity_standard(
         XX5, XY5, XZ5, YY5, YZ5, ZZ5, MX5, MY5, MZ5, M5, XX6, XY6, XZ6, YY6, YZ6, ZZ6, MX6, MY6, MZ6, M6, XX7,
         XY7, XZ7, YY7, YZ7, ZZ7, MX7, MY7, MZ7, M7, FV1, FC1, IA1, FV2, FC2, IA2, FV3, FC3, IA3, FV4, FC4,
         IA4, FV5, FC5, IA5, FV6, FC6, IA6, FV7, FC7, IA7 };
-    int status = WAM7_STATUS_OK;
+    wam7_status_t status = WAM7_STATUS_OK;
 
     if (!wam7_within_joints(q, WAM7_C(1.0e8))
         || !WAM7_PARAMETERS_USABLE(wam7_within(parameters, 91, WAM7_C(1.0e18)))) {
@@ -155,58 +155,69 @@ int wam7_gravity_standard(
     WAM7_SINCOS(q[5], &t14, &t16);
     wam7_real_t t19, t21;
     WAM7_SINCOS(q[6], &t19, &t21);
-    const wam7_real_t t1 = WAM7_C(9.81) * t0;
-    const wam7_real_t t3 = t2 * t1;
-    const wam7_real_t t6 = WAM7_C(-9.81) * t5;
-    const wam7_real_t t8 = t4 * t3 - t7 * t6;
-    const wam7_real_t t11 = t10 * t1;
-    const wam7_real_t t13 = t9 * t8 - t12 * t11;
-    const wam7_real_t t15 = t7 * t3 + t4 * t6;
-    const wam7_real_t t17 = t14 * t13 + t16 * t15;
+    const wam7_real_t t1 = WAM7_C(9.81) * t0; /* link j2: motion */
+    const wam7_real_t t3 = t2 * t1; /* link j3: motion */
+    const wam7_real_t t6 = WAM7_C(-9.81) * t5; /* link j2: motion */
+    const wam7_real_t t8 = t4 * t3 - t7 * t6; /* link j4: motion */
+    const wam7_real_t t11 = t10 * t1; /* link j3: motion */
+    const wam7_real_t t13 = t9 * t8 - t12 * t11; /* link j5: motion */
+    const wam7_real_t t15 = t7 * t3 + t4 * t6; /* link j4: motion */
+    const wam7_real_t t17 = t14 * t13 + t16 * t15; /* link j6: motion */
     const wam7_real_t t18 = t16 * t13 - t14 * t15;
-    const wam7_real_t t20 = t12 * t8 + t9 * t11;
-    const wam7_real_t t22 = t19 * t18 + t21 * t20;
-    const wam7_real_t t23 = t17 * parameters[MY7] + t22 * parameters[MZ7];
-    const wam7_real_t t24 = t19 * t20 - t21 * t18;
-    const wam7_real_t t25 = t24 * parameters[MZ7] + t17 * parameters[MX7];
+    const wam7_real_t t20 = t12 * t8 + t9 * t11; /* link j5: motion */
+    const wam7_real_t t22 = t19 * t18 + t21 * t20; /* link j7: motion */
+    const wam7_real_t t23 = t17 * parameters[MY7] + t22 * parameters[MZ7]; /* link j7: force and moment */
+    const wam7_real_t t24 = t19 * t20 - t21 * t18; /* link j7: motion */
+    const wam7_real_t t25 = t24 * parameters[MZ7] + t17 * parameters[MX7]; /* link j7: force and moment */
     const wam7_real_t t26 = t24 * parameters[M7];
     const wam7_real_t t27 = t22 * parameters[M7];
-    const wam7_real_t t28 = t19 * t26 + t21 * t27;
+    const wam7_real_t t28 = t19 * t26 + t21 * t27; /* link j7: what it passes on */
     const wam7_real_t t29 = t17 * parameters[MZ6] - t20 * parameters[MY6] + (t21 * t23 + t19 * t25
         + WAM7_C(0.06) * t28);
-    const wam7_real_t t30 = t22 * parameters[MX7] - t24 * parameters[MY7];
+    const wam7_real_t t30 = t22 * parameters[MX7] - t24 * parameters[MY7]; /* link j7: force and moment */
+    /* link j7: what it passes on */
     const wam7_real_t t31 = t18 * parameters[MZ6] + t20 * parameters[MX6] + t30;
+    /* link j6: what it passes on */
     const wam7_real_t t32 = t15 * parameters[MY5] + t20 * parameters[MZ5] - (t14 * t31 - t16 * t29);
-    const wam7_real_t t33 = t21 * t26 - t19 * t27;
+    const wam7_real_t t33 = t21 * t26 - t19 * t27; /* link j7: what it passes on */
     const wam7_real_t t34 = t17 * parameters[MX6] + t18 * parameters[MY6] + (t21 * t25 - t19 * t23
         + WAM7_C(0.06) * t33);
+    /* link j6: what it passes on */
     const wam7_real_t t35 = t15 * parameters[MX5] - t13 * parameters[MZ5] + t34;
-    const wam7_real_t t36 = t18 * parameters[M6] - t33;
+    const wam7_real_t t36 = t18 * parameters[M6] - t33; /* link j7: what it passes on */
     const wam7_real_t t37 = t17 * parameters[M6] + t17 * parameters[M7];
-    const wam7_real_t t38 = t13 * parameters[M5] + (t16 * t36 + t14 * t37);
+    const wam7_real_t t38 = t13 * parameters[M5] + (t16 * t36 + t14 * t37); /* link j6: what it passes on */
     const wam7_real_t t39 = t20 * parameters[M5] + (t20 * parameters[M6] + t28);
-    const wam7_real_t t40 = t9 * t39 - t12 * t38;
+    const wam7_real_t t40 = t9 * t39 - t12 * t38; /* link j5: what it passes on */
     const wam7_real_t t41 = t15 * parameters[MZ4] - t11 * parameters[MY4] + (t9 * t32 + t12 * t35
         + WAM7_C(0.3) * t40);
+    /* link j6: what it passes on */
     const wam7_real_t t42 = t20 * parameters[MX5] + t13 * parameters[MY5] + (t14 * t29 + t16 * t31);
+    /* link j5: what it passes on */
     const wam7_real_t t43 = t8 * parameters[MZ4] + t11 * parameters[MX4] + (t42 + WAM7_C(-0.045) * t40);
+    /* link j4: what it passes on */
     const wam7_real_t t44 = t7 * t43 - t4 * t41 - (t6 * parameters[MY3] + t11 * parameters[MZ3]);
-    const wam7_real_t t45 = t14 * t36 - t16 * t37 - t15 * parameters[M5];
-    const wam7_real_t t46 = t9 * t38 + t12 * t39;
+    const wam7_real_t t45 = t14 * t36 - t16 * t37 - t15 * parameters[M5]; /* link j6: what it passes on */
+    const wam7_real_t t46 = t9 * t38 + t12 * t39; /* link j5: what it passes on */
     const wam7_real_t t47 = t9 * t35 - t12 * t32 + (WAM7_C(0.045) * t45 + WAM7_C(-0.3) * t46);
     const wam7_real_t t48 = t15 * parameters[MX4] + t8 * parameters[MY4] + t47;
     const wam7_real_t t49 = t8 * parameters[M4] + t46;
     const wam7_real_t t50 = t15 * parameters[M4] - t45;
+    /* link j4: what it passes on */
     const wam7_real_t t51 = t6 * parameters[MX3] - t3 * parameters[MZ3] + (t48 + WAM7_C(0.045) * (t4 * t50
         - t7 * t49));
     const wam7_real_t t52 = t3 * parameters[M3] + (t4 * t49 + t7 * t50);
-    const wam7_real_t t53 = t11 * parameters[M4] + t40;
-    const wam7_real_t t54 = t11 * parameters[M3] + t53;
+    const wam7_real_t t53 = t11 * parameters[M4] + t40; /* link j5: what it passes on */
+    const wam7_real_t t54 = t11 * parameters[M3] + t53; /* link j4: what it passes on */
+    /* link j3: what it passes on */
     const wam7_real_t t55 = t10 * t51 - t2 * t44 + WAM7_C(0.55) * (t2 * t54 - t10 * t52);
+    /* link j4: what it passes on */
     const wam7_real_t t56 = t11 * parameters[MX3] + t3 * parameters[MY3] + (t7 * t41 + t4 * t43
         + WAM7_C(0.045) * t53);
+    /* link j2: what it passes on */
     const wam7_real_t t57 = t0 * (t6 * parameters[MZ2] + t55) + t5 * (t1 * parameters[MZ2] + t56);
     out[0] = WAM7_C(0.05209961446285298) * t57;
+    /* link j3: what it passes on */
     const wam7_real_t t58 = t10 * t44 + t2 * t51 + WAM7_C(-0.55) * (t2 * t52 + t10 * t54);
     out[1] = WAM7_C(0.07745783389167521) * (t6 * parameters[MX2] + t1 * parameters[MY2] + t58);
     out[2] = WAM7_C(0.07745783389167521) * t56;

@@ -6,7 +6,7 @@
  * Arm wam7, description 552353c9ea1f05cf.
  * SPDX-License-Identifier: 0BSD
  *
- * Operations: 643 (344 mul, 299 add, 0 neg), 12 trig, 7 other.
+ * Operations: 643 (344 mul, 299 add, 0 neg), 12 trig, 7 other calls (sign, select and the like).
  *
  * @param[in]   q           [7]   [rad]      joint coordinates; norm at most 10000
  * @param[in]   dq          [7]   [rad/s]    joint velocities; norm at most 100000
@@ -91,11 +91,11 @@
  */
 #include "wam7_private.h"
 
-#if WAM7_GENERATION != 0x7A21915FUL
+#if WAM7_GENERATION != 0x0E2B7B26UL
 #error "wam7.h and wam7_inverse_dynamics.c are of different generations: generate the arm again"
 #endif
 
-int wam7_inverse_dynamics(
+wam7_status_t wam7_inverse_dynamics(
     const wam7_real_t q[WAM7_N_JOINTS],
     const wam7_real_t dq[WAM7_N_JOINTS],
     const wam7_real_t ddq[WAM7_N_JOINTS],
@@ -106,7 +106,7 @@ int wam7_inverse_dynamics(
         XZ4, YZ4, ZZ4R, MX4R, MY4R, XX5R, XY5, XZ5, YZ5, ZZ5R, MX5, MY5R, XX6R, XY6, XZ6, YZ6, ZZ6R, MX6,
         MY6R, XX7R, XY7, XZ7R, YZ7R, ZZ7, MX7, MY7, FV1, FC1, FV2, FC2, FV3, FC3, IA3, FV4, FC4, IA4, FV5,
         FC5, IA5, FV6, FC6, IA6, FV7, FC7, IA7 };
-    int status = WAM7_STATUS_OK;
+    wam7_status_t status = WAM7_STATUS_OK;
 
     if (!wam7_within_joints(q, WAM7_C(1.0e8))
         || !wam7_within_joints(dq, WAM7_C(1.0e10))
@@ -131,66 +131,66 @@ int wam7_inverse_dynamics(
     WAM7_SINCOS(q[5], &t39, &t56);
     wam7_real_t t71, t63;
     WAM7_SINCOS(q[6], &t71, &t63);
-    const wam7_real_t t1 = t0 * dq[0];
-    const wam7_real_t t4 = t2 * t1 - t3 * dq[1];
-    const wam7_real_t t7 = t6 * dq[0];
-    const wam7_real_t t8 = dq[2] + t7;
-    const wam7_real_t t10 = t5 * t4 + t9 * t8;
-    const wam7_real_t t12 = t3 * t1 + t2 * dq[1];
-    const wam7_real_t t13 = dq[3] + t12;
-    const wam7_real_t t15 = t11 * t10 - t14 * t13;
+    const wam7_real_t t1 = t0 * dq[0]; /* link j2: motion */
+    const wam7_real_t t4 = t2 * t1 - t3 * dq[1]; /* link j3: motion */
+    const wam7_real_t t7 = t6 * dq[0]; /* link j2: motion */
+    const wam7_real_t t8 = dq[2] + t7; /* link j3: motion */
+    const wam7_real_t t10 = t5 * t4 + t9 * t8; /* link j4: motion */
+    const wam7_real_t t12 = t3 * t1 + t2 * dq[1]; /* link j3: motion */
+    const wam7_real_t t13 = dq[3] + t12; /* link j4: motion */
+    const wam7_real_t t15 = t11 * t10 - t14 * t13; /* link j5: motion */
     const wam7_real_t t16 = t14 * t10 + t11 * t13;
     const wam7_real_t t17 = t15 * t16;
-    const wam7_real_t t18 = t4 * t12;
-    const wam7_real_t t19 = dq[1] * t1;
+    const wam7_real_t t18 = t4 * t12; /* link j3: motion */
+    const wam7_real_t t19 = dq[1] * t1; /* link j2: motion */
     const wam7_real_t t20 = t6 * ddq[0];
     const wam7_real_t t21 = t20 - t19;
-    const wam7_real_t t22 = ddq[2] + t21;
-    const wam7_real_t t23 = t18 + t22;
-    const wam7_real_t t24 = t1 * t7;
-    const wam7_real_t t25 = t24 - ddq[1];
-    const wam7_real_t t26 = dq[1] * t7;
+    const wam7_real_t t22 = ddq[2] + t21; /* link j3: motion */
+    const wam7_real_t t23 = t18 + t22; /* link j4: motion */
+    const wam7_real_t t24 = t1 * t7; /* link j2: motion */
+    const wam7_real_t t25 = t24 - ddq[1]; /* link j3: motion */
+    const wam7_real_t t26 = dq[1] * t7; /* link j2: motion */
     const wam7_real_t t27 = t0 * ddq[0];
     const wam7_real_t t28 = t26 + t27;
-    const wam7_real_t t29 = t26 + t28;
+    const wam7_real_t t29 = t26 + t28; /* link j3: motion */
     const wam7_real_t t30 = t3 * t25 + t2 * t29;
     const wam7_real_t t31 = t12 * t8;
     const wam7_real_t t32 = t31 - t30;
-    const wam7_real_t t33 = t31 + t32;
+    const wam7_real_t t33 = t31 + t32; /* link j4: motion */
     const wam7_real_t t34 = t5 * t23 + t9 * t33;
     const wam7_real_t t35 = t10 * t13;
     const wam7_real_t t36 = t34 - t35;
-    const wam7_real_t t37 = ddq[4] + t36;
-    const wam7_real_t t38 = t17 + t37;
-    const wam7_real_t t40 = t5 * t8 - t9 * t4;
+    const wam7_real_t t37 = ddq[4] + t36; /* link j5: motion */
+    const wam7_real_t t38 = t17 + t37; /* link j6: motion */
+    const wam7_real_t t40 = t5 * t8 - t9 * t4; /* link j4: motion */
     const wam7_real_t t41 = t10 * t40;
-    const wam7_real_t t42 = t2 * t25 - t3 * t29;
+    const wam7_real_t t42 = t2 * t25 - t3 * t29; /* link j3: motion */
     const wam7_real_t t43 = t4 * t8;
     const wam7_real_t t44 = t42 - t43;
-    const wam7_real_t t45 = t44 - ddq[3];
-    const wam7_real_t t46 = t41 + t45;
-    const wam7_real_t t47 = t5 * t33 - t9 * t23;
+    const wam7_real_t t45 = t44 - ddq[3]; /* link j4: motion */
+    const wam7_real_t t46 = t41 + t45; /* link j5: motion */
+    const wam7_real_t t47 = t5 * t33 - t9 * t23; /* link j4: motion */
     const wam7_real_t t48 = t40 * t13;
     const wam7_real_t t49 = t47 - t48;
-    const wam7_real_t t50 = t49 - t48;
+    const wam7_real_t t50 = t49 - t48; /* link j5: motion */
     const wam7_real_t t51 = t11 * t50 - t14 * t46;
     const wam7_real_t t52 = dq[4] + t40;
     const wam7_real_t t53 = t16 * t52;
     const wam7_real_t t54 = t53 + t51;
-    const wam7_real_t t55 = t53 + t54;
+    const wam7_real_t t55 = t53 + t54; /* link j6: motion */
     const wam7_real_t t57 = t56 * t55 - t39 * t38;
     const wam7_real_t t58 = t56 * t52 - t39 * t15;
     const wam7_real_t t59 = dq[5] + t16;
     const wam7_real_t t60 = t58 * t59;
     const wam7_real_t t61 = t57 - t60;
-    const wam7_real_t t62 = t61 - t60;
-    const wam7_real_t t64 = t11 * t46 + t14 * t50;
+    const wam7_real_t t62 = t61 - t60; /* link j7: motion */
+    const wam7_real_t t64 = t11 * t46 + t14 * t50; /* link j5: motion */
     const wam7_real_t t65 = t15 * t52;
     const wam7_real_t t66 = t64 - t65;
-    const wam7_real_t t67 = t66 - ddq[5];
+    const wam7_real_t t67 = t66 - ddq[5]; /* link j6: motion */
     const wam7_real_t t68 = t56 * t15 + t39 * t52;
     const wam7_real_t t69 = t68 * t58;
-    const wam7_real_t t70 = t69 + t67;
+    const wam7_real_t t70 = t69 + t67; /* link j7: motion */
     const wam7_real_t t72 = t63 * t62 - t71 * t70;
     const wam7_real_t t73 = t71 * t68 + t63 * t59;
     const wam7_real_t t74 = dq[6] + t58;
@@ -199,179 +199,219 @@ int wam7_inverse_dynamics(
     const wam7_real_t t77 = t63 * t70 + t71 * t62;
     const wam7_real_t t78 = t63 * t68 - t71 * t59;
     const wam7_real_t t79 = t78 * t74;
-    const wam7_real_t t80 = t77 - t79 - t79;
-    const wam7_real_t t81 = t56 * t38 + t39 * t55;
+    const wam7_real_t t80 = t77 - t79 - t79; /* link j7: force and moment */
+    const wam7_real_t t81 = t56 * t38 + t39 * t55; /* link j6: motion */
     const wam7_real_t t82 = t68 * t59;
     const wam7_real_t t83 = t81 - t82;
-    const wam7_real_t t84 = ddq[6] + t83;
+    const wam7_real_t t84 = ddq[6] + t83; /* link j7: motion */
     const wam7_real_t t85 = t78 * t73;
-    const wam7_real_t t86 = t85 - t84;
+    const wam7_real_t t86 = t85 - t84; /* link j7: force and moment */
     const wam7_real_t t87 = parameters[ZZ7] * t75 + parameters[XX7R] * t76 - parameters[XY7] * t80
         - parameters[XZ7R] * t86;
-    const wam7_real_t t88 = t73 * t73;
+    const wam7_real_t t88 = t73 * t73; /* link j7: motion */
     const wam7_real_t t89 = t74 * t74;
-    const wam7_real_t t90 = t40 * t40;
+    const wam7_real_t t90 = t40 * t40; /* link j4: motion */
     const wam7_real_t t91 = t13 * t13;
-    const wam7_real_t t92 = t90 + t91;
-    const wam7_real_t t93 = t12 * t12;
+    const wam7_real_t t92 = t90 + t91; /* link j5: motion */
+    const wam7_real_t t93 = t12 * t12; /* link j3: motion */
     const wam7_real_t t94 = t8 * t8;
-    const wam7_real_t t95 = t93 + t94;
-    const wam7_real_t t96 = WAM7_C(9.81) * t0;
-    const wam7_real_t t97 = t96 + WAM7_C(0.55) * t25;
+    const wam7_real_t t95 = t93 + t94; /* link j4: motion */
+    const wam7_real_t t96 = WAM7_C(9.81) * t0; /* link j2: motion */
+    const wam7_real_t t97 = t96 + WAM7_C(0.55) * t25; /* link j3: motion */
     const wam7_real_t t98 = WAM7_C(0.55) * t29;
     const wam7_real_t t99 = t2 * t97 - t3 * t98;
-    const wam7_real_t t100 = WAM7_C(0.045) * t95 + t99;
+    const wam7_real_t t100 = WAM7_C(0.045) * t95 + t99; /* link j4: motion */
     const wam7_real_t t101 = t43 - t44;
-    const wam7_real_t t102 = t1 * t1;
+    const wam7_real_t t102 = t1 * t1; /* link j2: motion */
     const wam7_real_t t103 = dq[1] * dq[1];
     const wam7_real_t t104 = WAM7_C(-9.81) * t6;
-    const wam7_real_t t105 = t104 + WAM7_C(0.55) * (t103 + t102);
-    const wam7_real_t t106 = t105 + WAM7_C(0.045) * t101;
+    const wam7_real_t t105 = t104 + WAM7_C(0.55) * (t103 + t102); /* link j3: motion */
+    const wam7_real_t t106 = t105 + WAM7_C(0.045) * t101; /* link j4: motion */
     const wam7_real_t t107 = t5 * t100 - t9 * t106;
-    const wam7_real_t t108 = t107 + (WAM7_C(-0.045) * t92 + WAM7_C(0.3) * t46);
+    const wam7_real_t t108 = t107 + (WAM7_C(-0.045) * t92 + WAM7_C(0.3) * t46); /* link j5: motion */
     const wam7_real_t t109 = t36 - t35;
-    const wam7_real_t t110 = t3 * t97 + t2 * t98;
-    const wam7_real_t t111 = t18 - t22;
+    const wam7_real_t t110 = t3 * t97 + t2 * t98; /* link j3: motion */
+    const wam7_real_t t111 = t18 - t22; /* link j4: motion */
     const wam7_real_t t112 = t110 - WAM7_C(0.045) * t111;
-    const wam7_real_t t113 = t112 + (WAM7_C(-0.045) * t109 - WAM7_C(0.3) * t50);
+    const wam7_real_t t113 = t112 + (WAM7_C(-0.045) * t109 - WAM7_C(0.3) * t50); /* link j5: motion */
     const wam7_real_t t114 = t11 * t108 - t14 * t113;
-    const wam7_real_t t115 = t10 * t10;
-    const wam7_real_t t116 = t115 + t91;
+    const wam7_real_t t115 = t10 * t10; /* link j4: motion */
+    const wam7_real_t t116 = t115 + t91; /* link j5: motion */
     const wam7_real_t t117 = t45 - t41;
-    const wam7_real_t t118 = t9 * t100 + t5 * t106;
-    const wam7_real_t t119 = t118 + (WAM7_C(0.3) * t116 + WAM7_C(0.045) * t117);
-    const wam7_real_t t120 = t39 * t114 + t56 * t119;
+    const wam7_real_t t118 = t9 * t100 + t5 * t106; /* link j4: motion */
+    const wam7_real_t t119 = t118 + (WAM7_C(0.3) * t116 + WAM7_C(0.045) * t117); /* link j5: motion */
+    const wam7_real_t t120 = t39 * t114 + t56 * t119; /* link j6: motion */
+    /* link j7: force and moment */
     const wam7_real_t t121 = parameters[YZ7R] * (t88 - t89) + t87 - parameters[MY7] * t120;
     const wam7_real_t t122 = t75 + t76;
     const wam7_real_t t123 = t85 + t84;
     const wam7_real_t t124 = t79 * (parameters[ZZ7] - parameters[XX7R]) + parameters[XY7] * t122
         + parameters[YZ7R] * t123;
-    const wam7_real_t t125 = t78 * t78;
+    const wam7_real_t t125 = t78 * t78; /* link j7: motion */
+    /* link j7: force and moment */
     const wam7_real_t t126 = parameters[XZ7R] * (t89 - t125) + t124 + parameters[MX7] * t120;
-    const wam7_real_t t127 = t83 - t82;
+    const wam7_real_t t127 = t83 - t82; /* link j7: motion */
     const wam7_real_t t128 = t67 - t69;
+    /* link j6: force and moment */
     const wam7_real_t t129 = parameters[ZZ6R] * t60 - parameters[XX6R] * t61 + parameters[XY6] * t127
         + parameters[XZ6] * t128;
-    const wam7_real_t t130 = t58 * t58;
+    const wam7_real_t t130 = t58 * t58; /* link j6: motion */
     const wam7_real_t t131 = t59 * t59;
-    const wam7_real_t t132 = t14 * t108 + t11 * t113;
+    const wam7_real_t t132 = t14 * t108 + t11 * t113; /* link j5: motion */
+    /* link j7: what it passes on */
     const wam7_real_t t133 = parameters[YZ6] * (t131 - t130) + t129 - parameters[MY6R] * t132 + (t71 * t126
         - t63 * t121);
-    const wam7_real_t t134 = t56 * t114 - t39 * t119;
+    const wam7_real_t t134 = t56 * t114 - t39 * t119; /* link j6: motion */
+    /* link j7: force and moment */
     const wam7_real_t t135 = parameters[MX7] * (t71 * t134 + t63 * t132) + parameters[MY7] * (t63 * t134
         - t71 * t132);
     const wam7_real_t t136 = parameters[XX7R] * t85 + parameters[ZZ7] * t84 - parameters[YZ7R] * t77
         + parameters[XZ7R] * t72;
     const wam7_real_t t137 = parameters[XY7] * (t125 - t88) + t136 + t135;
+    /* link j6: force and moment */
     const wam7_real_t t138 = t82 * (parameters[XX6R] - parameters[ZZ6R]) - parameters[XY6] * t62
         + parameters[YZ6] * t70;
-    const wam7_real_t t139 = t68 * t68;
+    const wam7_real_t t139 = t68 * t68; /* link j6: motion */
+    /* link j7: what it passes on */
     const wam7_real_t t140 = parameters[XZ6] * (t139 - t131) + t138 + parameters[MX6] * t132 + t137;
-    const wam7_real_t t141 = t66 - t65;
+    const wam7_real_t t141 = t66 - t65; /* link j6: motion */
     const wam7_real_t t142 = t17 - t37;
+    /* link j5: force and moment */
     const wam7_real_t t143 = parameters[ZZ5R] * t53 + parameters[XX5R] * t54 - parameters[XY5] * t141
         - parameters[XZ5] * t142;
-    const wam7_real_t t144 = t16 * t16;
+    const wam7_real_t t144 = t16 * t16; /* link j5: motion */
     const wam7_real_t t145 = t52 * t52;
+    /* link j6: what it passes on */
     const wam7_real_t t146 = parameters[YZ5] * (t144 - t145) + t143 - parameters[MY5R] * t119 + (t39 * t140
         - t56 * t133);
+    /* link j6: force and moment */
     const wam7_real_t t147 = parameters[XZ6] * t57 - (parameters[XX6R] * t69 + parameters[ZZ6R] * t67
         + parameters[YZ6] * t81);
     const wam7_real_t t148 = parameters[XY6] * (t139 - t130) + t147 + (parameters[MX6] * t120
         + parameters[MY6R] * t134);
-    const wam7_real_t t149 = t148 + (t71 * t121 + t63 * t126);
+    const wam7_real_t t149 = t148 + (t71 * t121 + t63 * t126); /* link j7: what it passes on */
+    /* link j5: force and moment */
     const wam7_real_t t150 = t65 * (parameters[ZZ5R] - parameters[XX5R]) + parameters[XY5] * t55
         + parameters[YZ5] * t38;
-    const wam7_real_t t151 = t15 * t15;
+    const wam7_real_t t151 = t15 * t15; /* link j5: motion */
+    /* link j6: what it passes on */
     const wam7_real_t t152 = parameters[XZ5] * (t145 - t151) + t150 + parameters[MX5] * t119 + t149;
+    /* link j7: force and moment */
     const wam7_real_t t153 = parameters[MX7] * (t88 + t89) + parameters[MY7] * t123;
     const wam7_real_t t154 = parameters[MY7] * (t125 + t89) + parameters[MX7] * t86;
+    /* link j7: what it passes on */
     const wam7_real_t t155 = parameters[MX6] * (t130 + t131) - parameters[MY6R] * t70 + (t63 * t153
         - t71 * t154);
     const wam7_real_t t156 = parameters[MY6R] * (t139 + t131) + parameters[MX6] * t128
         + (parameters[MX7] * t80 + parameters[MY7] * t122);
+    /* link j6: what it passes on */
     const wam7_real_t t157 = t39 * t156 - t56 * t155 - (parameters[MX5] * (t144 + t145)
         + parameters[MY5R] * t38);
+    /* link j7: what it passes on */
     const wam7_real_t t158 = t71 * t153 + t63 * t154 - (parameters[MX6] * t127 + parameters[MY6R] * t62);
+    /* link j6: what it passes on */
     const wam7_real_t t159 = parameters[MY5R] * (t151 + t145) + parameters[MX5] * t142 + t158;
-    const wam7_real_t t160 = t14 * t157 - t11 * t159;
+    const wam7_real_t t160 = t14 * t157 - t11 * t159; /* link j5: what it passes on */
+    /* link j4: force and moment */
     const wam7_real_t t161 = parameters[ZZ4R] * t48 - parameters[XX4R] * t49 + parameters[XY4R] * t109
         + parameters[XZ4] * t117;
+    /* link j5: what it passes on */
     const wam7_real_t t162 = parameters[YZ4] * (t91 - t90) + t161 - parameters[MY4R] * t112 + (t14 * t152
         - t11 * t146 + WAM7_C(0.3) * t160);
+    /* link j5: force and moment */
     const wam7_real_t t163 = parameters[XX5R] * t17 + parameters[ZZ5R] * t37 - parameters[YZ5] * t64
         + parameters[XZ5] * t51;
     const wam7_real_t t164 = parameters[XY5] * (t151 - t144) + t163 + (parameters[MX5] * t132
         + parameters[MY5R] * t114);
-    const wam7_real_t t165 = t164 + (t39 * t133 + t56 * t140);
+    const wam7_real_t t165 = t164 + (t39 * t133 + t56 * t140); /* link j6: what it passes on */
+    /* link j4: force and moment */
     const wam7_real_t t166 = t35 * (parameters[XX4R] - parameters[ZZ4R]) - parameters[XY4R] * t50
         + parameters[YZ4] * t46;
+    /* link j5: what it passes on */
     const wam7_real_t t167 = parameters[XZ4] * (t115 - t91) + t166 + parameters[MX4R] * t112 + (t165
         + WAM7_C(-0.045) * t160);
+    /* link j3: force and moment */
     const wam7_real_t t168 = parameters[ZZ3R] * t31 + parameters[XX3R] * t32 + parameters[XY3R] * t101
         - parameters[XZ3] * t111;
+    /* link j4: what it passes on */
     const wam7_real_t t169 = parameters[YZ3] * (t93 - t94) + t168 - parameters[MY3R] * t105 + (t9 * t167
         - t5 * t162);
-    const wam7_real_t t170 = t11 * t157 + t14 * t159;
+    const wam7_real_t t170 = t11 * t157 + t14 * t159; /* link j5: what it passes on */
+    /* link j6: what it passes on */
     const wam7_real_t t171 = parameters[MX5] * t141 + parameters[MY5R] * t55 + (t39 * t155 + t56 * t156);
+    /* link j5: what it passes on */
     const wam7_real_t t172 = t14 * t146 + t11 * t152 + (WAM7_C(0.045) * t171 + WAM7_C(0.3) * t170);
+    /* link j4: force and moment */
     const wam7_real_t t173 = parameters[XZ4] * t47 - (parameters[XX4R] * t41 + parameters[ZZ4R] * t45
         + parameters[YZ4] * t34);
     const wam7_real_t t174 = parameters[XY4R] * (t115 - t90) + t173 + (parameters[MX4R] * t118
         + parameters[MY4R] * t107);
-    const wam7_real_t t175 = t174 + t172;
+    const wam7_real_t t175 = t174 + t172; /* link j5: what it passes on */
     const wam7_real_t t176 = parameters[MY4R] * t46 - parameters[MX4R] * t92 + t170;
     const wam7_real_t t177 = parameters[MY4R] * t116 + parameters[MX4R] * t117 + t171;
+    /* link j3: force and moment */
     const wam7_real_t t178 = t43 * (parameters[ZZ3R] - parameters[XX3R]) + parameters[XY3R] * t33
         + parameters[YZ3] * t23;
-    const wam7_real_t t179 = t4 * t4;
+    const wam7_real_t t179 = t4 * t4; /* link j3: motion */
+    /* link j4: what it passes on */
     const wam7_real_t t180 = parameters[MX3R] * t105 + (parameters[XZ3] * (t94 - t179) + t178) + (t175
         + WAM7_C(0.045) * (t9 * t176 - t5 * t177));
     const wam7_real_t t181 = t5 * t176 + t9 * t177 - (parameters[MX3R] * t95 + parameters[MY3R] * t23);
+    /* link j5: what it passes on */
     const wam7_real_t t182 = parameters[MX4R] * t109 + parameters[MY4R] * t50 + t160;
+    /* link j4: what it passes on */
     const wam7_real_t t183 = parameters[MY3R] * (t179 + t94) + parameters[MX3R] * t111 - t182;
+    /* link j3: what it passes on */
     const wam7_real_t t184 = t3 * t180 - t2 * t169 + WAM7_C(0.55) * (t3 * t181 - t2 * t183);
+    /* link j2: force and moment */
     const wam7_real_t t185 = parameters[ZZ2R] * t26 + parameters[XX2R] * t28 + parameters[XY2] * (t21 - t19);
-    const wam7_real_t t186 = t7 * t7;
+    const wam7_real_t t186 = t7 * t7; /* link j2: motion */
+    /* link j2: force and moment */
     const wam7_real_t t187 = parameters[YZ2] * (t103 - t186) + (t185 - parameters[XZ2] * (ddq[1] + t24));
+    /* link j3: force and moment */
     const wam7_real_t t188 = parameters[XX3R] * t18 + parameters[ZZ3R] * t22 - parameters[YZ3] * t42
         - parameters[XZ3] * t30;
     const wam7_real_t t189 = parameters[XY3R] * (t179 - t93) + t188 + (parameters[MX3R] * t110
         + parameters[MY3R] * t99);
+    /* link j4: what it passes on */
     const wam7_real_t t190 = t189 + (t9 * t162 + t5 * t167 + WAM7_C(0.045) * t182);
+    /* link j2: force and moment */
     const wam7_real_t t191 = t19 * (parameters[XX2R] - parameters[ZZ2R]) + parameters[XY2] * t29
         + parameters[YZ2] * t25;
+    /* link j2: what it passes on */
     const wam7_real_t t192 = t0 * (t187 + t184) + t6 * (parameters[XZ2] * (t102 - t103) + t191 + t190);
-    const wam7_real_t t193 = wam7_sign(dq[0]);
+    const wam7_real_t t193 = wam7_sign(dq[0]); /* joint j1: coulomb_friction */
     const wam7_real_t t194 = WAM7_C(2.1881838074398248) * (parameters[FV1] * (WAM7_C(42.0) * dq[0])
         + parameters[FC1] * t193) + WAM7_C(0.05209961446285298) * (parameters[ZZ1R] * ddq[0] + t192);
     out[0] = t194;
+    /* link j3: what it passes on */
     const wam7_real_t t195 = t3 * t169 + t2 * t180 + WAM7_C(0.55) * (t2 * t181 + t3 * t183);
+    /* link j2: force and moment */
     const wam7_real_t t196 = parameters[ZZ2R] * ddq[1] - parameters[XX2R] * t24 - parameters[YZ2] * t20
         - parameters[XZ2] * t27;
     const wam7_real_t t197 = parameters[MX2] * t104 + parameters[MY2R] * t96 + (parameters[XY2] * (t102
         - t186) + t196);
-    const wam7_real_t t198 = wam7_sign(dq[1]);
+    const wam7_real_t t198 = wam7_sign(dq[1]); /* joint j2: coulomb_friction */
     const wam7_real_t t199 = WAM7_C(2.1881838074398248) * (parameters[FV2] * (WAM7_C(28.25) * dq[1])
         + parameters[FC2] * t198) + WAM7_C(0.07745783389167521) * (t197 + t195);
     out[1] = t199;
-    const wam7_real_t t200 = wam7_sign(dq[2]);
+    const wam7_real_t t200 = wam7_sign(dq[2]); /* joint j3: coulomb_friction */
     const wam7_real_t t201 = parameters[FV3] * (WAM7_C(28.25) * dq[2]) + parameters[FC3] * t200
         + parameters[IA3] * (WAM7_C(28.25) * ddq[2]);
     out[2] = WAM7_C(2.1881838074398248) * t201 + WAM7_C(0.07745783389167521) * t190;
-    const wam7_real_t t202 = wam7_sign(dq[3]);
+    const wam7_real_t t202 = wam7_sign(dq[3]); /* joint j4: coulomb_friction */
     const wam7_real_t t203 = parameters[FV4] * (WAM7_C(18.0) * dq[3]) + parameters[FC4] * t202
         + parameters[IA4] * (WAM7_C(18.0) * ddq[3]);
     out[3] = WAM7_C(2.1881838074398248) * t203 + WAM7_C(0.12156576707999026) * t175;
-    const wam7_real_t t204 = wam7_sign(dq[4]);
+    const wam7_real_t t204 = wam7_sign(dq[4]); /* joint j5: coulomb_friction */
     const wam7_real_t t205 = parameters[FV5] * (WAM7_C(9.48) * dq[4]) + parameters[FC5] * t204
         + parameters[IA5] * (WAM7_C(9.48) * ddq[4]);
     out[4] = WAM7_C(4.237288135593221) * t205 + WAM7_C(0.4469713223199599) * t165;
-    const wam7_real_t t206 = wam7_sign(dq[5]);
+    const wam7_real_t t206 = wam7_sign(dq[5]); /* joint j6: coulomb_friction */
     const wam7_real_t t207 = parameters[FV6] * (WAM7_C(9.48) * dq[5]) + parameters[FC6] * t206
         + parameters[IA6] * (WAM7_C(9.48) * ddq[5]);
     out[5] = WAM7_C(4.237288135593221) * t207 + WAM7_C(0.4469713223199599) * t149;
-    const wam7_real_t t208 = wam7_sign(dq[6]);
+    const wam7_real_t t208 = wam7_sign(dq[6]); /* joint j7: coulomb_friction */
     const wam7_real_t t209 = parameters[FV7] * (WAM7_C(14.93) * dq[6]) + parameters[FC7] * t208
         + parameters[IA7] * (WAM7_C(14.93) * ddq[6]);
     out[6] = WAM7_C(14.925373134328357) * t209 + WAM7_C(0.9996900960702182) * t137;

@@ -7,16 +7,16 @@
  * Arm wam7, description 552353c9ea1f05cf.
  * SPDX-License-Identifier: 0BSD
  *
- * Operations: 3119 (1782 mul, 1337 add, 0 neg), 12 trig, 7 other.
+ * Operations: 3119 (1782 mul, 1337 add, 0 neg), 12 trig, 7 other calls (sign, select and the like).
  *
- * @param[in]   q             [7]   [rad]                joint coordinates; norm at most 10000
- * @param[in]   dq            [7]   [rad/s]              joint velocities; norm at most 100000
- * @param[in]   ddq           [7]   [rad/s^2]            joint accelerations; norm at most 1e+08
- * @param[in]   parameters    [62]                       base parameters; norm at most 1e+09
- * @param[out]  input         [7]   [A]                  inputs: motor currents, efforts where undriven
- * @param[out]  input_by_q    [49]  [(A) per (rad)]      d input / d q; 7 x 7, row-major
- * @param[out]  input_by_dq   [49]  [(A) per (rad/s)]    d input / d dq; 7 x 7, row-major
- * @param[out]  input_by_ddq  [49]  [(A) per (rad/s^2)]  d input / d ddq; 7 x 7, row-major
+ * @param[in]   q             [7]   [rad]              joint coordinates; norm at most 10000
+ * @param[in]   dq            [7]   [rad/s]            joint velocities; norm at most 100000
+ * @param[in]   ddq           [7]   [rad/s^2]          joint accelerations; norm at most 1e+08
+ * @param[in]   parameters    [62]                     base parameters; norm at most 1e+09
+ * @param[out]  input         [7]   [A]                inputs: motor currents, efforts where undriven
+ * @param[out]  input_by_q    [49]  [A per rad]        d input / d q; 7 x 7, row-major
+ * @param[out]  input_by_dq   [49]  [A per (rad/s)]    d input / d dq; 7 x 7, row-major
+ * @param[out]  input_by_ddq  [49]  [A per (rad/s^2)]  d input / d ddq; 7 x 7, row-major
  *
  * Coordinates:
  *
@@ -95,11 +95,11 @@
  */
 #include "wam7_private.h"
 
-#if WAM7_GENERATION != 0x7A21915FUL
+#if WAM7_GENERATION != 0x0E2B7B26UL
 #error "wam7.h and wam7_inverse_dynamics_derivatives.c are of different generations: generate the arm again"
 #endif
 
-int wam7_inverse_dynamics_derivatives(
+wam7_status_t wam7_inverse_dynamics_derivatives(
     const wam7_real_t q[WAM7_N_JOINTS],
     const wam7_real_t dq[WAM7_N_JOINTS],
     const wam7_real_t ddq[WAM7_N_JOINTS],
@@ -113,7 +113,7 @@ int wam7_inverse_dynamics_derivatives(
         XZ4, YZ4, ZZ4R, MX4R, MY4R, XX5R, XY5, XZ5, YZ5, ZZ5R, MX5, MY5R, XX6R, XY6, XZ6, YZ6, ZZ6R, MX6,
         MY6R, XX7R, XY7, XZ7R, YZ7R, ZZ7, MX7, MY7, FV1, FC1, FV2, FC2, FV3, FC3, IA3, FV4, FC4, IA4, FV5,
         FC5, IA5, FV6, FC6, IA6, FV7, FC7, IA7 };
-    int status = WAM7_STATUS_OK;
+    wam7_status_t status = WAM7_STATUS_OK;
 
     if (!wam7_within_joints(q, WAM7_C(1.0e8))
         || !wam7_within_joints(dq, WAM7_C(1.0e10))
@@ -141,66 +141,66 @@ int wam7_inverse_dynamics_derivatives(
     WAM7_SINCOS(q[5], &t39, &t56);
     wam7_real_t t71, t63;
     WAM7_SINCOS(q[6], &t71, &t63);
-    const wam7_real_t t1 = t0 * dq[0];
-    const wam7_real_t t4 = t2 * t1 - t3 * dq[1];
-    const wam7_real_t t7 = t6 * dq[0];
-    const wam7_real_t t8 = dq[2] + t7;
-    const wam7_real_t t10 = t5 * t4 + t9 * t8;
-    const wam7_real_t t12 = t3 * t1 + t2 * dq[1];
-    const wam7_real_t t13 = dq[3] + t12;
-    const wam7_real_t t15 = t14 * t13 - t11 * t10;
+    const wam7_real_t t1 = t0 * dq[0]; /* link j2: motion */
+    const wam7_real_t t4 = t2 * t1 - t3 * dq[1]; /* link j3: motion */
+    const wam7_real_t t7 = t6 * dq[0]; /* link j2: motion */
+    const wam7_real_t t8 = dq[2] + t7; /* link j3: motion */
+    const wam7_real_t t10 = t5 * t4 + t9 * t8; /* link j4: motion */
+    const wam7_real_t t12 = t3 * t1 + t2 * dq[1]; /* link j3: motion */
+    const wam7_real_t t13 = dq[3] + t12; /* link j4: motion */
+    const wam7_real_t t15 = t14 * t13 - t11 * t10; /* link j5: motion */
     const wam7_real_t t16 = t14 * t10 + t11 * t13;
     const wam7_real_t t17 = t15 * t16;
-    const wam7_real_t t18 = t4 * t12;
-    const wam7_real_t t19 = dq[1] * t1;
+    const wam7_real_t t18 = t4 * t12; /* link j3: motion */
+    const wam7_real_t t19 = dq[1] * t1; /* link j2: motion */
     const wam7_real_t t20 = t6 * ddq[0];
     const wam7_real_t t21 = t19 - t20;
-    const wam7_real_t t22 = t21 - ddq[2];
-    const wam7_real_t t23 = t18 - t22;
-    const wam7_real_t t24 = t1 * t7;
-    const wam7_real_t t25 = ddq[1] - t24;
-    const wam7_real_t t26 = dq[1] * t7;
+    const wam7_real_t t22 = t21 - ddq[2]; /* link j3: motion */
+    const wam7_real_t t23 = t18 - t22; /* link j4: motion */
+    const wam7_real_t t24 = t1 * t7; /* link j2: motion */
+    const wam7_real_t t25 = ddq[1] - t24; /* link j3: motion */
+    const wam7_real_t t26 = dq[1] * t7; /* link j2: motion */
     const wam7_real_t t27 = t0 * ddq[0];
     const wam7_real_t t28 = t26 + t27;
-    const wam7_real_t t29 = t26 + t28;
+    const wam7_real_t t29 = t26 + t28; /* link j3: motion */
     const wam7_real_t t30 = t2 * t29 - t3 * t25;
     const wam7_real_t t31 = t12 * t8;
     const wam7_real_t t32 = t30 - t31;
-    const wam7_real_t t33 = t32 - t31;
+    const wam7_real_t t33 = t32 - t31; /* link j4: motion */
     const wam7_real_t t34 = t9 * t33 - t5 * t23;
     const wam7_real_t t35 = t10 * t13;
     const wam7_real_t t36 = t35 + t34;
-    const wam7_real_t t37 = t36 - ddq[4];
-    const wam7_real_t t38 = t17 + t37;
-    const wam7_real_t t40 = t5 * t8 - t9 * t4;
+    const wam7_real_t t37 = t36 - ddq[4]; /* link j5: motion */
+    const wam7_real_t t38 = t17 + t37; /* link j6: motion */
+    const wam7_real_t t40 = t5 * t8 - t9 * t4; /* link j4: motion */
     const wam7_real_t t41 = t10 * t40;
-    const wam7_real_t t42 = t2 * t25 + t3 * t29;
+    const wam7_real_t t42 = t2 * t25 + t3 * t29; /* link j3: motion */
     const wam7_real_t t43 = t4 * t8;
     const wam7_real_t t44 = t43 + t42;
-    const wam7_real_t t45 = ddq[3] + t44;
-    const wam7_real_t t46 = t45 - t41;
-    const wam7_real_t t47 = t9 * t23 + t5 * t33;
+    const wam7_real_t t45 = ddq[3] + t44; /* link j4: motion */
+    const wam7_real_t t46 = t45 - t41; /* link j5: motion */
+    const wam7_real_t t47 = t9 * t23 + t5 * t33; /* link j4: motion */
     const wam7_real_t t48 = t40 * t13;
     const wam7_real_t t49 = t48 + t47;
-    const wam7_real_t t50 = t48 + t49;
+    const wam7_real_t t50 = t48 + t49; /* link j5: motion */
     const wam7_real_t t51 = t14 * t46 - t11 * t50;
     const wam7_real_t t52 = dq[4] + t40;
     const wam7_real_t t53 = t16 * t52;
     const wam7_real_t t54 = t53 + t51;
-    const wam7_real_t t55 = t53 + t54;
+    const wam7_real_t t55 = t53 + t54; /* link j6: motion */
     const wam7_real_t t57 = t39 * t38 + t56 * t55;
     const wam7_real_t t58 = t39 * t15 + t56 * t52;
     const wam7_real_t t59 = dq[5] + t16;
     const wam7_real_t t60 = t58 * t59;
     const wam7_real_t t61 = t57 - t60;
-    const wam7_real_t t62 = t61 - t60;
-    const wam7_real_t t64 = t11 * t46 + t14 * t50;
+    const wam7_real_t t62 = t61 - t60; /* link j7: motion */
+    const wam7_real_t t64 = t11 * t46 + t14 * t50; /* link j5: motion */
     const wam7_real_t t65 = t15 * t52;
     const wam7_real_t t66 = t64 - t65;
-    const wam7_real_t t67 = ddq[5] + t66;
+    const wam7_real_t t67 = ddq[5] + t66; /* link j6: motion */
     const wam7_real_t t68 = t56 * t15 - t39 * t52;
     const wam7_real_t t69 = t68 * t58;
-    const wam7_real_t t70 = t69 + t67;
+    const wam7_real_t t70 = t69 + t67; /* link j7: motion */
     const wam7_real_t t72 = t71 * t70 + t63 * t62;
     const wam7_real_t t73 = t71 * t68 - t63 * t59;
     const wam7_real_t t74 = dq[6] + t58;
@@ -209,183 +209,222 @@ int wam7_inverse_dynamics_derivatives(
     const wam7_real_t t77 = t63 * t70 - t71 * t62;
     const wam7_real_t t78 = t63 * t68 + t71 * t59;
     const wam7_real_t t79 = t78 * t74;
-    const wam7_real_t t80 = t77 - t79 - t79;
-    const wam7_real_t t81 = t56 * t38 - t39 * t55;
+    const wam7_real_t t80 = t77 - t79 - t79; /* link j7: force and moment */
+    const wam7_real_t t81 = t56 * t38 - t39 * t55; /* link j6: motion */
     const wam7_real_t t82 = t68 * t59;
     const wam7_real_t t83 = t81 - t82;
-    const wam7_real_t t84 = ddq[6] - t83;
+    const wam7_real_t t84 = ddq[6] - t83; /* link j7: motion */
     const wam7_real_t t85 = t78 * t73;
-    const wam7_real_t t86 = t84 - t85;
+    const wam7_real_t t86 = t84 - t85; /* link j7: force and moment */
     const wam7_real_t t87 = parameters[XX7R] * t76 - parameters[ZZ7] * t75 + parameters[XY7] * t80
         + parameters[XZ7R] * t86;
-    const wam7_real_t t88 = t73 * t73;
+    const wam7_real_t t88 = t73 * t73; /* link j7: motion */
     const wam7_real_t t89 = t74 * t74;
-    const wam7_real_t t90 = t40 * t40;
+    const wam7_real_t t90 = t40 * t40; /* link j4: motion */
     const wam7_real_t t91 = t13 * t13;
-    const wam7_real_t t92 = t90 + t91;
-    const wam7_real_t t93 = t12 * t12;
+    const wam7_real_t t92 = t90 + t91; /* link j5: motion */
+    const wam7_real_t t93 = t12 * t12; /* link j3: motion */
     const wam7_real_t t94 = t8 * t8;
-    const wam7_real_t t95 = t93 + t94;
-    const wam7_real_t t96 = WAM7_C(-9.81) * t0;
-    const wam7_real_t t97 = t96 + WAM7_C(0.55) * t25;
+    const wam7_real_t t95 = t93 + t94; /* link j4: motion */
+    const wam7_real_t t96 = WAM7_C(-9.81) * t0; /* link j2: motion */
+    const wam7_real_t t97 = t96 + WAM7_C(0.55) * t25; /* link j3: motion */
     const wam7_real_t t98 = WAM7_C(0.55) * t29;
     const wam7_real_t t99 = t2 * t97 + t3 * t98;
-    const wam7_real_t t100 = WAM7_C(-0.045) * t95 + t99;
+    const wam7_real_t t100 = WAM7_C(-0.045) * t95 + t99; /* link j4: motion */
     const wam7_real_t t101 = t43 + t44;
-    const wam7_real_t t102 = t1 * t1;
+    const wam7_real_t t102 = t1 * t1; /* link j2: motion */
     const wam7_real_t t103 = dq[1] * dq[1];
     const wam7_real_t t104 = WAM7_C(9.81) * t6;
-    const wam7_real_t t105 = t104 - WAM7_C(0.55) * (t103 + t102);
-    const wam7_real_t t106 = t105 - WAM7_C(0.045) * t101;
+    const wam7_real_t t105 = t104 - WAM7_C(0.55) * (t103 + t102); /* link j3: motion */
+    const wam7_real_t t106 = t105 - WAM7_C(0.045) * t101; /* link j4: motion */
     const wam7_real_t t107 = t5 * t100 - t9 * t106;
-    const wam7_real_t t108 = t107 + (WAM7_C(0.045) * t92 + WAM7_C(0.3) * t46);
+    const wam7_real_t t108 = t107 + (WAM7_C(0.045) * t92 + WAM7_C(0.3) * t46); /* link j5: motion */
     const wam7_real_t t109 = t35 + t36;
-    const wam7_real_t t110 = t3 * t97 - t2 * t98;
-    const wam7_real_t t111 = t18 + t22;
+    const wam7_real_t t110 = t3 * t97 - t2 * t98; /* link j3: motion */
+    const wam7_real_t t111 = t18 + t22; /* link j4: motion */
     const wam7_real_t t112 = t110 + WAM7_C(0.045) * t111;
-    const wam7_real_t t113 = WAM7_C(0.045) * t109 - WAM7_C(-0.3) * t50 - t112;
+    const wam7_real_t t113 = WAM7_C(0.045) * t109 - WAM7_C(-0.3) * t50 - t112; /* link j5: motion */
     const wam7_real_t t114 = t11 * t108 + t14 * t113;
-    const wam7_real_t t115 = t10 * t10;
-    const wam7_real_t t116 = t115 + t91;
+    const wam7_real_t t115 = t10 * t10; /* link j4: motion */
+    const wam7_real_t t116 = t115 + t91; /* link j5: motion */
     const wam7_real_t t117 = t41 + t45;
-    const wam7_real_t t118 = t9 * t100 + t5 * t106;
-    const wam7_real_t t119 = t118 + (WAM7_C(-0.3) * t116 + WAM7_C(0.045) * t117);
-    const wam7_real_t t120 = t39 * t114 + t56 * t119;
+    const wam7_real_t t118 = t9 * t100 + t5 * t106; /* link j4: motion */
+    const wam7_real_t t119 = t118 + (WAM7_C(-0.3) * t116 + WAM7_C(0.045) * t117); /* link j5: motion */
+    const wam7_real_t t120 = t39 * t114 + t56 * t119; /* link j6: motion */
+    /* link j7: force and moment */
     const wam7_real_t t121 = parameters[YZ7R] * (t88 - t89) + t87 + parameters[MY7] * t120;
     const wam7_real_t t122 = t76 - t75;
     const wam7_real_t t123 = t85 + t84;
     const wam7_real_t t124 = parameters[XY7] * t122 - t79 * (parameters[ZZ7] - parameters[XX7R])
         + parameters[YZ7R] * t123;
-    const wam7_real_t t125 = t78 * t78;
+    const wam7_real_t t125 = t78 * t78; /* link j7: motion */
+    /* link j7: force and moment */
     const wam7_real_t t126 = parameters[XZ7R] * (t89 - t125) + t124 - parameters[MX7] * t120;
-    const wam7_real_t t127 = t83 - t82;
+    const wam7_real_t t127 = t83 - t82; /* link j7: motion */
     const wam7_real_t t128 = t69 - t67;
+    /* link j6: force and moment */
     const wam7_real_t t129 = parameters[XX6R] * t61 - parameters[ZZ6R] * t60 + parameters[XY6] * t127
         - parameters[XZ6] * t128;
-    const wam7_real_t t130 = t58 * t58;
+    const wam7_real_t t130 = t58 * t58; /* link j6: motion */
     const wam7_real_t t131 = t59 * t59;
-    const wam7_real_t t132 = t14 * t108 - t11 * t113;
+    const wam7_real_t t132 = t14 * t108 - t11 * t113; /* link j5: motion */
+    /* link j7: what it passes on */
     const wam7_real_t t133 = parameters[YZ6] * (t130 - t131) + t129 - parameters[MY6R] * t132 + (t63 * t121
         - t71 * t126);
-    const wam7_real_t t134 = t39 * t119 - t56 * t114;
-    const wam7_real_t t135 = t63 * t132 - t71 * t134;
+    const wam7_real_t t134 = t39 * t119 - t56 * t114; /* link j6: motion */
+    const wam7_real_t t135 = t63 * t132 - t71 * t134; /* link j7: motion */
     const wam7_real_t t136 = t63 * t134 + t71 * t132;
+    /* link j7: force and moment */
     const wam7_real_t t137 = parameters[XX7R] * t85 + parameters[ZZ7] * t84 + parameters[YZ7R] * t77
         + parameters[XZ7R] * t72;
     const wam7_real_t t138 = parameters[XY7] * (t88 - t125) - t137 + (parameters[MX7] * t135
         - parameters[MY7] * t136);
+    /* link j6: force and moment */
     const wam7_real_t t139 = parameters[XY6] * t62 - t82 * (parameters[ZZ6R] - parameters[XX6R])
         + parameters[YZ6] * t70;
-    const wam7_real_t t140 = t68 * t68;
+    const wam7_real_t t140 = t68 * t68; /* link j6: motion */
+    /* link j7: what it passes on */
     const wam7_real_t t141 = parameters[XZ6] * (t131 - t140) + t139 + parameters[MX6] * t132 + t138;
-    const wam7_real_t t142 = t66 - t65;
+    const wam7_real_t t142 = t66 - t65; /* link j6: motion */
     const wam7_real_t t143 = t37 - t17;
+    /* link j5: force and moment */
     const wam7_real_t t144 = parameters[ZZ5R] * t53 + parameters[XX5R] * t54 + parameters[XY5] * t142
         - parameters[XZ5] * t143;
-    const wam7_real_t t145 = t16 * t16;
+    const wam7_real_t t145 = t16 * t16; /* link j5: motion */
     const wam7_real_t t146 = t52 * t52;
+    /* link j6: what it passes on */
     const wam7_real_t t147 = parameters[YZ5] * (t145 - t146) + t144 + parameters[MY5R] * t119 + (t56 * t133
         - t39 * t141);
+    /* link j6: force and moment */
     const wam7_real_t t148 = parameters[XX6R] * t69 + parameters[ZZ6R] * t67 + parameters[YZ6] * t81
         + parameters[XZ6] * t57;
     const wam7_real_t t149 = parameters[XY6] * (t140 - t130) + t148 + (parameters[MY6R] * t134
         - parameters[MX6] * t120);
-    const wam7_real_t t150 = t149 + (t71 * t121 + t63 * t126);
+    const wam7_real_t t150 = t149 + (t71 * t121 + t63 * t126); /* link j7: what it passes on */
+    /* link j5: force and moment */
     const wam7_real_t t151 = parameters[XY5] * t55 - t65 * (parameters[ZZ5R] - parameters[XX5R])
         - parameters[YZ5] * t38;
-    const wam7_real_t t152 = t15 * t15;
+    const wam7_real_t t152 = t15 * t15; /* link j5: motion */
+    /* link j6: what it passes on */
     const wam7_real_t t153 = parameters[XZ5] * (t146 - t152) + t151 - parameters[MX5] * t119 + t150;
+    /* link j7: force and moment */
     const wam7_real_t t154 = parameters[MX7] * (t88 + t89) + parameters[MY7] * t123;
     const wam7_real_t t155 = parameters[MY7] * (t125 + t89) - parameters[MX7] * t86;
+    /* link j7: what it passes on */
     const wam7_real_t t156 = parameters[MX6] * (t130 + t131) + parameters[MY6R] * t70 + (t63 * t154
         - t71 * t155);
     const wam7_real_t t157 = parameters[MY6R] * (t140 + t131) + parameters[MX6] * t128
         + (parameters[MY7] * t122 - parameters[MX7] * t80);
+    /* link j6: what it passes on */
     const wam7_real_t t158 = parameters[MX5] * (t145 + t146) - parameters[MY5R] * t38 + (t56 * t156
         - t39 * t157);
+    /* link j7: what it passes on */
     const wam7_real_t t159 = parameters[MX6] * t127 - parameters[MY6R] * t62 + (t71 * t154 + t63 * t155);
+    /* link j6: what it passes on */
     const wam7_real_t t160 = parameters[MY5R] * (t152 + t146) + parameters[MX5] * t143 + t159;
-    const wam7_real_t t161 = t14 * t158 + t11 * t160;
+    const wam7_real_t t161 = t14 * t158 + t11 * t160; /* link j5: what it passes on */
+    /* link j4: force and moment */
     const wam7_real_t t162 = parameters[XY4R] * t109 - (parameters[ZZ4R] * t48 + parameters[XX4R] * t49)
         + parameters[XZ4] * t117;
+    /* link j5: what it passes on */
     const wam7_real_t t163 = parameters[YZ4] * (t90 - t91) + t162 - parameters[MY4R] * t112 + (t11 * t147
         - t14 * t153 + WAM7_C(0.3) * t161);
+    /* link j5: force and moment */
     const wam7_real_t t164 = parameters[XX5R] * t17 + parameters[ZZ5R] * t37 - parameters[YZ5] * t64
         - parameters[XZ5] * t51;
     const wam7_real_t t165 = parameters[XY5] * (t145 - t152) + t164 + (parameters[MX5] * t132
         + parameters[MY5R] * t114);
-    const wam7_real_t t166 = t165 + (t39 * t133 + t56 * t141);
+    const wam7_real_t t166 = t165 + (t39 * t133 + t56 * t141); /* link j6: what it passes on */
+    /* link j4: force and moment */
     const wam7_real_t t167 = t35 * (parameters[ZZ4R] - parameters[XX4R]) - parameters[XY4R] * t50
         + parameters[YZ4] * t46;
+    /* link j5: what it passes on */
     const wam7_real_t t168 = parameters[XZ4] * (t91 - t115) + t167 + parameters[MX4R] * t112 + (t166
         + WAM7_C(-0.045) * t161);
+    /* link j3: force and moment */
     const wam7_real_t t169 = parameters[ZZ3R] * t31 - parameters[XX3R] * t32 + parameters[XY3R] * t101
         - parameters[XZ3] * t111;
+    /* link j4: what it passes on */
     const wam7_real_t t170 = parameters[MY3R] * t105 + (parameters[YZ3] * (t93 - t94) + t169) + (t5 * t163
         - t9 * t168);
-    const wam7_real_t t171 = t14 * t160 - t11 * t158;
+    const wam7_real_t t171 = t14 * t160 - t11 * t158; /* link j5: what it passes on */
+    /* link j6: what it passes on */
     const wam7_real_t t172 = parameters[MY5R] * t55 - parameters[MX5] * t142 + (t39 * t156 + t56 * t157);
+    /* link j5: what it passes on */
     const wam7_real_t t173 = t14 * t147 + t11 * t153 + (WAM7_C(0.045) * t172 + WAM7_C(0.3) * t171);
+    /* link j4: force and moment */
     const wam7_real_t t174 = parameters[ZZ4R] * t45 - parameters[XX4R] * t41 + parameters[YZ4] * t34
         - parameters[XZ4] * t47;
     const wam7_real_t t175 = parameters[XY4R] * (t115 - t90) + t174 - (parameters[MX4R] * t118
         + parameters[MY4R] * t107);
-    const wam7_real_t t176 = t175 + t173;
+    const wam7_real_t t176 = t175 + t173; /* link j5: what it passes on */
     const wam7_real_t t177 = t171 - (parameters[MX4R] * t92 + parameters[MY4R] * t46);
     const wam7_real_t t178 = parameters[MY4R] * t116 - parameters[MX4R] * t117 + t172;
+    /* link j3: force and moment */
     const wam7_real_t t179 = t43 * (parameters[ZZ3R] - parameters[XX3R]) - parameters[XY3R] * t33
         + parameters[YZ3] * t23;
-    const wam7_real_t t180 = t4 * t4;
+    const wam7_real_t t180 = t4 * t4; /* link j3: motion */
+    /* link j4: what it passes on */
     const wam7_real_t t181 = parameters[XZ3] * (t94 - t180) + t179 - parameters[MX3R] * t105 + (t176
         + WAM7_C(0.045) * (t9 * t177 - t5 * t178));
     const wam7_real_t t182 = t5 * t177 + t9 * t178 - (parameters[MX3R] * t95 + parameters[MY3R] * t23);
+    /* link j5: what it passes on */
     const wam7_real_t t183 = parameters[MX4R] * t109 + parameters[MY4R] * t50 + t161;
+    /* link j4: what it passes on */
     const wam7_real_t t184 = parameters[MY3R] * (t180 + t94) + parameters[MX3R] * t111 + t183;
+    /* link j3: what it passes on */
     const wam7_real_t t185 = t3 * t181 - t2 * t170 + WAM7_C(0.55) * (t3 * t182 - t2 * t184);
+    /* link j2: force and moment */
     const wam7_real_t t186 = parameters[ZZ2R] * t26 + parameters[XX2R] * t28 - parameters[XY2] * (t19 + t21);
-    const wam7_real_t t187 = t7 * t7;
+    const wam7_real_t t187 = t7 * t7; /* link j2: motion */
+    /* link j2: force and moment */
     const wam7_real_t t188 = parameters[YZ2] * (t103 - t187) + (t186 - parameters[XZ2] * (ddq[1] + t24));
-    const wam7_real_t t189 = t188 + t185;
+    const wam7_real_t t189 = t188 + t185; /* link j3: what it passes on */
+    /* link j3: force and moment */
     const wam7_real_t t190 = parameters[ZZ3R] * t22 - parameters[XX3R] * t18 - parameters[YZ3] * t42
         + parameters[XZ3] * t30;
     const wam7_real_t t191 = parameters[XY3R] * (t93 - t180) + t190 + (parameters[MX3R] * t110
         + parameters[MY3R] * t99);
+    /* link j4: what it passes on */
     const wam7_real_t t192 = t191 + (t9 * t163 + t5 * t168 + WAM7_C(0.045) * t183);
+    /* link j2: force and moment */
     const wam7_real_t t193 = t19 * (parameters[ZZ2R] - parameters[XX2R]) - parameters[XY2] * t29
         + parameters[YZ2] * t25;
-    const wam7_real_t t194 = parameters[XZ2] * (t103 - t102) + t193 + t192;
+    const wam7_real_t t194 = parameters[XZ2] * (t103 - t102) + t193 + t192; /* link j3: what it passes on */
     const wam7_real_t t195 = WAM7_C(0.05209961446285298) * (parameters[ZZ1R] * ddq[0] + (t0 * t189
         - t6 * t194));
-    const wam7_real_t t196 = wam7_sign(dq[0]);
+    const wam7_real_t t196 = wam7_sign(dq[0]); /* joint j1: coulomb_friction */
     const wam7_real_t t197 = WAM7_C(2.1881838074398248) * (parameters[FV1] * (WAM7_C(42.0) * dq[0])
         + parameters[FC1] * t196) + t195;
     input[0] = t197;
+    /* link j3: what it passes on */
     const wam7_real_t t198 = t3 * t170 + t2 * t181 + WAM7_C(0.55) * (t2 * t182 + t3 * t184);
+    /* link j2: force and moment */
     const wam7_real_t t199 = parameters[ZZ2R] * ddq[1] - parameters[XX2R] * t24 - parameters[YZ2] * t20
         - parameters[XZ2] * t27;
     const wam7_real_t t200 = parameters[XY2] * (t102 - t187) + t199 - (parameters[MX2] * t104
         + parameters[MY2R] * t96);
-    const wam7_real_t t201 = wam7_sign(dq[1]);
+    const wam7_real_t t201 = wam7_sign(dq[1]); /* joint j2: coulomb_friction */
     const wam7_real_t t202 = WAM7_C(2.1881838074398248) * (parameters[FV2] * (WAM7_C(28.25) * dq[1])
         + parameters[FC2] * t201) + WAM7_C(0.07745783389167521) * (t200 + t198);
     input[1] = t202;
-    const wam7_real_t t203 = wam7_sign(dq[2]);
+    const wam7_real_t t203 = wam7_sign(dq[2]); /* joint j3: coulomb_friction */
     const wam7_real_t t204 = parameters[FV3] * (WAM7_C(28.25) * dq[2]) + parameters[FC3] * t203
         + parameters[IA3] * (WAM7_C(28.25) * ddq[2]);
     input[2] = WAM7_C(2.1881838074398248) * t204 + WAM7_C(-0.07745783389167521) * t192;
-    const wam7_real_t t205 = wam7_sign(dq[3]);
+    const wam7_real_t t205 = wam7_sign(dq[3]); /* joint j4: coulomb_friction */
     const wam7_real_t t206 = parameters[FV4] * (WAM7_C(18.0) * dq[3]) + parameters[FC4] * t205
         + parameters[IA4] * (WAM7_C(18.0) * ddq[3]);
     input[3] = WAM7_C(2.1881838074398248) * t206 + WAM7_C(0.12156576707999026) * t176;
-    const wam7_real_t t207 = wam7_sign(dq[4]);
+    const wam7_real_t t207 = wam7_sign(dq[4]); /* joint j5: coulomb_friction */
     const wam7_real_t t208 = parameters[FV5] * (WAM7_C(9.48) * dq[4]) + parameters[FC5] * t207
         + parameters[IA5] * (WAM7_C(9.48) * ddq[4]);
     input[4] = WAM7_C(4.237288135593221) * t208 + WAM7_C(-0.4469713223199599) * t166;
-    const wam7_real_t t209 = wam7_sign(dq[5]);
+    const wam7_real_t t209 = wam7_sign(dq[5]); /* joint j6: coulomb_friction */
     const wam7_real_t t210 = parameters[FV6] * (WAM7_C(9.48) * dq[5]) + parameters[FC6] * t209
         + parameters[IA6] * (WAM7_C(9.48) * ddq[5]);
     input[5] = WAM7_C(4.237288135593221) * t210 + WAM7_C(0.4469713223199599) * t150;
-    const wam7_real_t t211 = wam7_sign(dq[6]);
+    const wam7_real_t t211 = wam7_sign(dq[6]); /* joint j7: coulomb_friction */
     const wam7_real_t t212 = parameters[FV7] * (WAM7_C(14.93) * dq[6]) + parameters[FC7] * t211
         + parameters[IA7] * (WAM7_C(14.93) * ddq[6]);
     input[6] = WAM7_C(14.925373134328357) * t212 + WAM7_C(-0.9996900960702182) * t138;
@@ -398,6 +437,7 @@ int wam7_inverse_dynamics_derivatives(
     const wam7_real_t t219 = parameters[XX7R] + t218;
     const wam7_real_t t220 = t74 * t219 - parameters[XZ7R] * t78;
     const wam7_real_t t221 = parameters[YZ7R] * t73 + t74 * t218;
+    /* link j7: inertia, momentum beyond */
     const wam7_real_t t222 = t63 * (t215 + t217) + t71 * (t220 - t221);
     const wam7_real_t t223 = t63 * t222;
     const wam7_real_t t224 = parameters[XZ6] * t58;
@@ -415,299 +455,339 @@ int wam7_inverse_dynamics_derivatives(
     const wam7_real_t t236 = parameters[YZ7R] * t74 + t73 * t235;
     const wam7_real_t t237 = parameters[XZ7R] * t74 - t78 * t235;
     const wam7_real_t t238 = t59 * t232 - parameters[YZ6] * t58 + (t63 * t236 + t71 * t237);
+    /* link j6: inertia, momentum beyond */
     const wam7_real_t t239 = t56 * (t226 + t229) + t39 * (t238 - t234);
     const wam7_real_t t240 = t56 * t239;
     const wam7_real_t t241 = parameters[XZ5] * t16;
     const wam7_real_t t242 = parameters[XY5] * t52;
     const wam7_real_t t243 = t241 - t242 + (t229 - t240);
-    const wam7_real_t t244 = t224 + t228 + (t223 - t215);
+    const wam7_real_t t244 = t224 + t228 + (t223 - t215); /* link j7: inertia, momentum beyond */
     const wam7_real_t t245 = parameters[YZ5] * t15;
-    const wam7_real_t t246 = t242 - t245 + t244;
-    const wam7_real_t t247 = t71 * t222;
+    const wam7_real_t t246 = t242 - t245 + t244; /* link j6: inertia, momentum beyond */
+    const wam7_real_t t247 = t71 * t222; /* link j7: inertia, momentum beyond */
     const wam7_real_t t248 = t232 - parameters[ZZ6R];
     const wam7_real_t t249 = parameters[YZ6] * t59 - t58 * t248 + (t221 + t247);
     const wam7_real_t t250 = t71 * t230 + t63 * t231 - (parameters[XZ6] * t59 + t68 * t248);
     const wam7_real_t t251 = WAM7_C(-0.5) * (parameters[XX5R] + parameters[ZZ5R]);
+    /* link j6: inertia, momentum beyond */
     const wam7_real_t t252 = parameters[YZ5] * t16 - t52 * t251 - (t56 * t249 - t39 * t250);
+    /* link j7: inertia, momentum beyond */
     const wam7_real_t t253 = parameters[XY6] * t68 - t58 * t233 + (t220 - t247);
     const wam7_real_t t254 = t68 * t232 - parameters[XY6] * t58 + (t63 * t237 - t71 * t236);
     const wam7_real_t t255 = parameters[XX5R] + t251;
+    /* link j6: inertia, momentum beyond */
     const wam7_real_t t256 = t52 * t255 - parameters[XZ5] * t15 + (t56 * t253 + t39 * t254);
+    /* link j5: inertia, momentum beyond */
     const wam7_real_t t257 = t11 * (t246 - t243) + t14 * (t252 + t256);
     const wam7_real_t t258 = t11 * t257;
     const wam7_real_t t259 = parameters[MY7] * t78 + parameters[MX7] * t73;
-    const wam7_real_t t260 = parameters[MX6] * t59 - t259;
+    const wam7_real_t t260 = parameters[MX6] * t59 - t259; /* link j7: inertia, momentum beyond */
     const wam7_real_t t261 = parameters[MY7] * t74;
     const wam7_real_t t262 = parameters[MX7] * t74;
     const wam7_real_t t263 = parameters[MY6R] * t59 + (t63 * t261 + t71 * t262);
+    /* link j6: inertia, momentum beyond */
     const wam7_real_t t264 = parameters[MY5R] * t52 + (t56 * t263 + t39 * t260);
+    /* link j7: inertia, momentum beyond */
     const wam7_real_t t265 = parameters[MY6R] * t68 + parameters[MX6] * t58 + (t63 * t262 - t71 * t261);
-    const wam7_real_t t266 = parameters[MX5] * t52 + t265;
-    const wam7_real_t t267 = t11 * t264 + t14 * t266;
+    const wam7_real_t t266 = parameters[MX5] * t52 + t265; /* link j6: inertia, momentum beyond */
+    const wam7_real_t t267 = t11 * t264 + t14 * t266; /* link j5: inertia, momentum beyond */
     const wam7_real_t t268 = WAM7_C(0.045) * t267;
+    /* link j7: column of the mass matrix */
     const wam7_real_t t269 = t63 * parameters[MY7] + t71 * parameters[MX7];
-    const wam7_real_t t270 = parameters[MY5R] + t269;
+    const wam7_real_t t270 = parameters[MY5R] + t269; /* link j6: inertia of it and all beyond */
+    /* link j7: column of the mass matrix */
     const wam7_real_t t271 = t63 * parameters[MX7] - t71 * parameters[MY7];
-    const wam7_real_t t272 = parameters[MX6] + t271;
-    const wam7_real_t t273 = t56 * t272 - t39 * parameters[MY6R];
-    const wam7_real_t t274 = parameters[MX5] + t273;
-    const wam7_real_t t275 = t11 * t274 - t14 * t270;
-    const wam7_real_t t276 = WAM7_C(-0.3) * t13;
-    const wam7_real_t t277 = t275 * t276;
+    const wam7_real_t t272 = parameters[MX6] + t271; /* link j7: inertia of it and all beyond */
+    const wam7_real_t t273 = t56 * t272 - t39 * parameters[MY6R]; /* link j6: column of the mass matrix */
+    const wam7_real_t t274 = parameters[MX5] + t273; /* link j6: inertia of it and all beyond */
+    const wam7_real_t t275 = t11 * t274 - t14 * t270; /* link j5: column of the mass matrix */
+    const wam7_real_t t276 = WAM7_C(-0.3) * t13; /* link j5: velocity of its origin */
+    const wam7_real_t t277 = t275 * t276; /* link j5: inertia, momentum beyond */
+    /* link j6: inertia, momentum beyond */
     const wam7_real_t t278 = parameters[MY5R] * t15 - parameters[MX5] * t16 + (t39 * t263 - t56 * t260);
-    const wam7_real_t t279 = WAM7_C(-0.3) * t278;
-    const wam7_real_t t280 = t56 * parameters[MY6R] + t39 * t272;
-    const wam7_real_t t281 = WAM7_C(0.045) * t13;
-    const wam7_real_t t282 = t280 * t281;
-    const wam7_real_t t283 = t11 * t270 + t14 * t274;
-    const wam7_real_t t284 = WAM7_C(0.3) * t10 + WAM7_C(-0.045) * t40;
-    const wam7_real_t t285 = t283 * t284;
+    const wam7_real_t t279 = WAM7_C(-0.3) * t278; /* link j5: inertia, momentum beyond */
+    const wam7_real_t t280 = t56 * parameters[MY6R] + t39 * t272; /* link j6: column of the mass matrix */
+    const wam7_real_t t281 = WAM7_C(0.045) * t13; /* link j5: velocity of its origin */
+    const wam7_real_t t282 = t280 * t281; /* link j5: inertia, momentum beyond */
+    const wam7_real_t t283 = t11 * t270 + t14 * t274; /* link j5: column of the mass matrix */
+    const wam7_real_t t284 = WAM7_C(0.3) * t10 + WAM7_C(-0.045) * t40; /* link j5: velocity of its origin */
+    const wam7_real_t t285 = t283 * t284; /* link j5: inertia, momentum beyond */
     const wam7_real_t t286 = t268 - t279 + (t285 - (t277 + t282));
     const wam7_real_t t287 = parameters[XZ4] * t40;
     const wam7_real_t t288 = parameters[XY4R] * t13;
     const wam7_real_t t289 = t287 + t288 + (t258 - t246 + (t268 - t277) - t286);
-    const wam7_real_t t290 = t245 - t241 + (t240 - t226);
+    const wam7_real_t t290 = t245 - t241 + (t240 - t226); /* link j6: inertia, momentum beyond */
     const wam7_real_t t291 = parameters[YZ4] * t10;
+    /* link j5: inertia, momentum beyond */
     const wam7_real_t t292 = t288 + t291 + (t286 + (t290 + (t279 + t282)));
-    const wam7_real_t t293 = t39 * t239;
+    const wam7_real_t t293 = t39 * t239; /* link j6: inertia, momentum beyond */
     const wam7_real_t t294 = parameters[XY5] * t15 - t16 * t255 + (t234 + t293);
     const wam7_real_t t295 = t15 * t251 - parameters[XY5] * t16 + (t39 * t249 + t56 * t250);
+    /* link j5: inertia, momentum beyond */
     const wam7_real_t t296 = t11 * t294 - t14 * t295 + (WAM7_C(0.045) * t278 - t275 * t281);
     const wam7_real_t t297 = WAM7_C(0.5) * (parameters[XX4R] + parameters[ZZ4R]);
     const wam7_real_t t298 = t297 - parameters[XX4R];
     const wam7_real_t t299 = t13 * t298 - parameters[XZ4] * t10 + t296;
     const wam7_real_t t300 = parameters[ZZ5R] + t251;
+    /* link j6: inertia, momentum beyond */
     const wam7_real_t t301 = parameters[YZ5] * t52 - t16 * t300 + (t238 - t293);
     const wam7_real_t t302 = parameters[XZ5] * t52 - t15 * t300 + (t56 * t254 - t39 * t253);
+    /* link j5: inertia, momentum beyond */
     const wam7_real_t t303 = t11 * t301 + t14 * t302 + (WAM7_C(-0.3) * t267 + t280 * t276);
     const wam7_real_t t304 = t13 * t297 - parameters[YZ4] * t40 + t303;
-    const wam7_real_t t305 = t5 * (t289 + t292) + t9 * (t304 - t299);
+    const wam7_real_t t305 = t5 * (t289 + t292) + t9 * (t304 - t299); /* link j4: inertia, momentum beyond */
     const wam7_real_t t306 = t5 * t305;
-    const wam7_real_t t307 = parameters[MY4R] * t13 + t267;
+    const wam7_real_t t307 = parameters[MY4R] * t13 + t267; /* link j5: inertia, momentum beyond */
     const wam7_real_t t308 = t278 - parameters[MX4R] * t13;
-    const wam7_real_t t309 = t9 * t308 - t5 * t307;
+    const wam7_real_t t309 = t9 * t308 - t5 * t307; /* link j4: inertia, momentum beyond */
     const wam7_real_t t310 = WAM7_C(0.045) * t309;
-    const wam7_real_t t311 = WAM7_C(0.045) * t8;
-    const wam7_real_t t312 = t283 * t311;
-    const wam7_real_t t313 = parameters[MX4R] + t275;
+    const wam7_real_t t311 = WAM7_C(0.045) * t8; /* link j4: velocity of its origin */
+    const wam7_real_t t312 = t283 * t311; /* link j4: inertia, momentum beyond */
+    const wam7_real_t t313 = parameters[MX4R] + t275; /* link j5: inertia of it and all beyond */
     const wam7_real_t t314 = parameters[MY4R] + t280;
-    const wam7_real_t t315 = t5 * t314 + t9 * t313;
-    const wam7_real_t t316 = WAM7_C(0.045) * t12;
-    const wam7_real_t t317 = t315 * t316;
+    const wam7_real_t t315 = t5 * t314 + t9 * t313; /* link j4: column of the mass matrix */
+    const wam7_real_t t316 = WAM7_C(0.045) * t12; /* link j4: velocity of its origin */
+    const wam7_real_t t317 = t315 * t316; /* link j4: inertia, momentum beyond */
     const wam7_real_t t318 = t310 + (t312 + t317);
     const wam7_real_t t319 = parameters[XZ3] * t12;
     const wam7_real_t t320 = parameters[XY3R] * t8;
     const wam7_real_t t321 = t319 - t320 + (t318 + (t292 - t306 - t310));
+    /* link j5: inertia, momentum beyond */
     const wam7_real_t t322 = t287 - t291 + (t286 + (t243 + t258 - t285));
     const wam7_real_t t323 = parameters[YZ3] * t4;
-    const wam7_real_t t324 = t320 + t323 + (t318 + (t322 - t312));
-    const wam7_real_t t325 = t14 * t257;
+    const wam7_real_t t324 = t320 + t323 + (t318 + (t322 - t312)); /* link j4: inertia, momentum beyond */
+    const wam7_real_t t325 = t14 * t257; /* link j5: inertia, momentum beyond */
     const wam7_real_t t326 = t297 - parameters[ZZ4R];
     const wam7_real_t t327 = parameters[YZ4] * t13 - t40 * t326 + (t325 - t252 - t283 * t276);
     const wam7_real_t t328 = t10 * t326 - parameters[XZ4] * t13 + (t14 * t294 + t11 * t295 - t283 * t281);
     const wam7_real_t t329 = WAM7_C(0.5) * (parameters[XX3R] + parameters[ZZ3R]);
+    /* link j4: inertia, momentum beyond */
     const wam7_real_t t330 = parameters[YZ3] * t12 + t8 * t329 - (t5 * t327 - t9 * t328);
-    const wam7_real_t t331 = t14 * t264 - t11 * t266;
+    const wam7_real_t t331 = t14 * t264 - t11 * t266; /* link j5: inertia, momentum beyond */
     const wam7_real_t t332 = t256 - t325 + (WAM7_C(-0.045) * t331 - t275 * t284) - (parameters[XY4R] * t10
         + t40 * t298);
     const wam7_real_t t333 = t11 * t302 - t14 * t301 + (WAM7_C(0.3) * t331 + t280 * t284);
     const wam7_real_t t334 = t333 - (parameters[XY4R] * t40 + t10 * t297);
     const wam7_real_t t335 = parameters[MY4R] * t10 - parameters[MX4R] * t40 + t331;
-    const wam7_real_t t336 = t5 * t313 - t9 * t314;
+    const wam7_real_t t336 = t5 * t313 - t9 * t314; /* link j4: column of the mass matrix */
+    /* link j4: inertia, momentum beyond */
     const wam7_real_t t337 = t5 * t332 + t9 * t334 + (WAM7_C(0.045) * t335 - t336 * t311);
     const wam7_real_t t338 = parameters[XX3R] - t329;
     const wam7_real_t t339 = parameters[XZ3] * t4 + t8 * t338 + t337;
-    const wam7_real_t t340 = t2 * (t324 - t321) + t3 * (t330 + t339);
+    const wam7_real_t t340 = t2 * (t324 - t321) + t3 * (t330 + t339); /* link j3: inertia, momentum beyond */
     const wam7_real_t t341 = t2 * t340;
-    const wam7_real_t t342 = parameters[MY3R] + t283;
+    const wam7_real_t t342 = parameters[MY3R] + t283; /* link j4: inertia of it and all beyond */
     const wam7_real_t t343 = parameters[MX3R] + t336;
-    const wam7_real_t t344 = t2 * t343 - t3 * t342;
-    const wam7_real_t t345 = WAM7_C(0.55) * dq[1];
-    const wam7_real_t t346 = t344 * t345;
-    const wam7_real_t t347 = t9 * t307 + t5 * t308;
+    const wam7_real_t t344 = t2 * t343 - t3 * t342; /* link j3: column of the mass matrix */
+    const wam7_real_t t345 = WAM7_C(0.55) * dq[1]; /* link j3: velocity of its origin */
+    const wam7_real_t t346 = t344 * t345; /* link j3: inertia, momentum beyond */
+    const wam7_real_t t347 = t9 * t307 + t5 * t308; /* link j4: inertia, momentum beyond */
     const wam7_real_t t348 = t347 - (parameters[MY3R] * t4 + parameters[MX3R] * t12);
-    const wam7_real_t t349 = WAM7_C(-0.55) * t348;
-    const wam7_real_t t350 = t2 * t342 + t3 * t343;
-    const wam7_real_t t351 = WAM7_C(-0.55) * t1;
-    const wam7_real_t t352 = t350 * t351;
+    const wam7_real_t t349 = WAM7_C(-0.55) * t348; /* link j3: inertia, momentum beyond */
+    const wam7_real_t t350 = t2 * t342 + t3 * t343; /* link j3: column of the mass matrix */
+    const wam7_real_t t351 = WAM7_C(-0.55) * t1; /* link j3: velocity of its origin */
+    const wam7_real_t t352 = t350 * t351; /* link j3: inertia, momentum beyond */
     const wam7_real_t t353 = t346 - t352 - t349;
     const wam7_real_t t354 = parameters[XZ2] * t7;
     const wam7_real_t t355 = parameters[XY2] * dq[1];
     const wam7_real_t t356 = t353 + (t324 - t341 - t346) - (t354 + t355);
+    /* link j4: inertia, momentum beyond */
     const wam7_real_t t357 = t318 + (t306 - t289 - t317) - (t319 + t323);
     const wam7_real_t t358 = parameters[YZ2] * t1;
-    const wam7_real_t t359 = t355 + t358 + (t353 + (t357 + t349));
-    const wam7_real_t t360 = t9 * t305;
+    const wam7_real_t t359 = t355 + t358 + (t353 + (t357 + t349)); /* link j3: inertia, momentum beyond */
+    const wam7_real_t t360 = t9 * t305; /* link j4: inertia, momentum beyond */
     const wam7_real_t t361 = t299 + t360 + (WAM7_C(-0.045) * t347 + t336 * t316) - (parameters[XY3R] * t4
         + t12 * t338);
     const wam7_real_t t362 = t4 * t329 - parameters[XY3R] * t12 + (t9 * t327 + t5 * t328 + t283 * t316);
     const wam7_real_t t363 = WAM7_C(0.5) * (parameters[XX2R] + parameters[ZZ2R]);
     const wam7_real_t t364 = parameters[XX2R] - t363;
+    /* link j3: inertia, momentum beyond */
     const wam7_real_t t365 = parameters[XZ2] * t1 + dq[1] * t364 + (t3 * t362 - t2 * t361);
     const wam7_real_t t366 = parameters[ZZ3R] - t329;
+    /* link j4: inertia, momentum beyond */
     const wam7_real_t t367 = parameters[YZ3] * t8 - t12 * t366 + (t304 - t360);
     const wam7_real_t t368 = parameters[XZ3] * t8 + t4 * t366 + (t5 * t334 - t9 * t332 + t315 * t311);
     const wam7_real_t t369 = t309 - parameters[MY3R] * t8;
     const wam7_real_t t370 = t335 - parameters[MX3R] * t8;
+    /* link j3: inertia, momentum beyond */
     const wam7_real_t t371 = WAM7_C(0.55) * (t2 * t369 + t3 * t370) - t315 * t345;
     const wam7_real_t t372 = dq[1] * t363 - parameters[YZ2] * t7 + (t2 * t367 + t3 * t368 + t371);
+    /* link j2: inertia, momentum beyond */
     const wam7_real_t t373 = t6 * (t6 * (t359 - t356) + t0 * (t372 + t365));
     input_by_dq[0] = WAM7_C(91.90371991247264) * parameters[FV1] + WAM7_C(0.10419922892570596) * (t356
         + t373);
-    const wam7_real_t t374 = t3 * t340;
+    const wam7_real_t t374 = t3 * t340; /* link j3: inertia, momentum beyond */
     const wam7_real_t t375 = parameters[XY2] * t1 - t7 * t364 + (t374 - t339 - t344 * t351);
-    const wam7_real_t t376 = WAM7_C(2.0) * t375;
+    const wam7_real_t t376 = WAM7_C(2.0) * t375; /* link j2: derivatives */
+    /* link j3: inertia, momentum beyond */
     const wam7_real_t t377 = WAM7_C(0.55) * (t2 * t370 - t3 * t369) - t315 * t351;
     const wam7_real_t t378 = parameters[XY2] * t7 + t1 * t363 + (t3 * t367 - t2 * t368 - t377);
-    const wam7_real_t t379 = WAM7_C(2.0) * t378;
+    const wam7_real_t t379 = WAM7_C(2.0) * t378; /* link j2: derivatives */
     input_by_dq[7] = WAM7_C(0.07745783389167521) * (t0 * t376 - t6 * t379);
-    const wam7_real_t t380 = WAM7_C(2.0) * t361;
+    const wam7_real_t t380 = WAM7_C(2.0) * t361; /* link j3: derivatives */
     const wam7_real_t t381 = WAM7_C(2.0) * t362;
     const wam7_real_t t382 = t3 * t381 - t2 * t380;
     const wam7_real_t t383 = WAM7_C(2.0) * t357;
-    const wam7_real_t t384 = WAM7_C(-1.1) * t1;
+    const wam7_real_t t384 = WAM7_C(-1.1) * t1; /* link j7: derivatives */
     const wam7_real_t t385 = WAM7_C(-1.1) * dq[1];
-    const wam7_real_t t386 = t350 * t384 + t344 * t385 - t383;
+    const wam7_real_t t386 = t350 * t384 + t344 * t385 - t383; /* link j3: derivatives */
     input_by_dq[14] = WAM7_C(0.07745783389167521) * (t0 * t382 - t6 * t386);
-    const wam7_real_t t387 = WAM7_C(2.0) * t332;
+    const wam7_real_t t387 = WAM7_C(2.0) * t332; /* link j4: derivatives */
     const wam7_real_t t388 = WAM7_C(2.0) * t334;
-    const wam7_real_t t389 = WAM7_C(0.09) * t8;
-    const wam7_real_t t390 = t5 * t387 + t9 * t388 - t336 * t389;
+    const wam7_real_t t389 = WAM7_C(0.09) * t8; /* link j7: derivatives */
+    const wam7_real_t t390 = t5 * t387 + t9 * t388 - t336 * t389; /* link j4: derivatives */
     const wam7_real_t t391 = WAM7_C(2.0) * t322;
-    const wam7_real_t t392 = WAM7_C(0.09) * t12;
-    const wam7_real_t t393 = t391 + t315 * t392;
+    const wam7_real_t t392 = WAM7_C(0.09) * t12; /* link j7: derivatives */
+    const wam7_real_t t393 = t391 + t315 * t392; /* link j4: derivatives */
     const wam7_real_t t394 = t3 * t393 - t2 * t390 - t336 * t384;
     const wam7_real_t t395 = t5 * t388 - t9 * t387 + t315 * t389;
-    const wam7_real_t t396 = t2 * t315;
+    const wam7_real_t t396 = t2 * t315; /* link j4: column of the mass matrix */
     const wam7_real_t t397 = t3 * t315;
-    const wam7_real_t t398 = t395 + (t397 * t385 - t396 * t384);
+    const wam7_real_t t398 = t395 + (t397 * t385 - t396 * t384); /* link j4: derivatives */
     input_by_dq[21] = WAM7_C(0.12156576707999026) * (t0 * t394 + t6 * t398);
-    const wam7_real_t t399 = WAM7_C(2.0) * t294;
+    const wam7_real_t t399 = WAM7_C(2.0) * t294; /* link j5: derivatives */
     const wam7_real_t t400 = WAM7_C(2.0) * t295;
-    const wam7_real_t t401 = WAM7_C(0.09) * t13;
-    const wam7_real_t t402 = t11 * t399 - t14 * t400 - t275 * t401;
+    const wam7_real_t t401 = WAM7_C(0.09) * t13; /* link j7: derivatives */
+    const wam7_real_t t402 = t11 * t399 - t14 * t400 - t275 * t401; /* link j5: derivatives */
     const wam7_real_t t403 = WAM7_C(2.0) * t290;
-    const wam7_real_t t404 = WAM7_C(2.0) * t284;
+    const wam7_real_t t404 = WAM7_C(2.0) * t284; /* link j7: derivatives */
     const wam7_real_t t405 = WAM7_C(-0.6) * t13;
-    const wam7_real_t t406 = t403 + (t283 * t404 - t275 * t405);
-    const wam7_real_t t407 = t9 * t283;
-    const wam7_real_t t408 = t5 * t402 + t9 * t406 + (t407 * t389 + t275 * t392);
+    const wam7_real_t t406 = t403 + (t283 * t404 - t275 * t405); /* link j5: derivatives */
+    const wam7_real_t t407 = t9 * t283; /* link j5: column of the mass matrix */
+    const wam7_real_t t408 = t5 * t402 + t9 * t406 + (t407 * t389 + t275 * t392); /* link j5: derivatives */
     const wam7_real_t t409 = t14 * t399 + t11 * t400 - t283 * t401;
-    const wam7_real_t t410 = t5 * t283;
-    const wam7_real_t t411 = t409 + t410 * t392;
+    const wam7_real_t t410 = t5 * t283; /* link j5: column of the mass matrix */
+    const wam7_real_t t411 = t409 + t410 * t392; /* link j5: derivatives */
     const wam7_real_t t412 = t3 * t411 - t2 * t408 + t407 * t384;
     const wam7_real_t t413 = t5 * t406 - t9 * t402 + t410 * t389;
-    const wam7_real_t t414 = t2 * t410 + t3 * t275;
+    const wam7_real_t t414 = t2 * t410 + t3 * t275; /* link j5: column of the mass matrix */
     const wam7_real_t t415 = t2 * t275 - t3 * t410;
-    const wam7_real_t t416 = t413 - (t414 * t384 + t415 * t385);
+    const wam7_real_t t416 = t413 - (t414 * t384 + t415 * t385); /* link j5: derivatives */
     input_by_dq[28] = WAM7_C(0.4469713223199599) * (t0 * t412 + t6 * t416);
-    const wam7_real_t t417 = WAM7_C(2.0) * t253;
+    const wam7_real_t t417 = WAM7_C(2.0) * t253; /* link j6: derivatives */
     const wam7_real_t t418 = WAM7_C(2.0) * t254;
     const wam7_real_t t419 = t56 * t417 + t39 * t418;
     const wam7_real_t t420 = WAM7_C(2.0) * t244;
-    const wam7_real_t t421 = t14 * t280;
-    const wam7_real_t t422 = t11 * t419 - t14 * t420 + (t421 * t401 - t273 * t404);
+    const wam7_real_t t421 = t14 * t280; /* link j6: column of the mass matrix */
+    const wam7_real_t t422 = t11 * t419 - t14 * t420 + (t421 * t401 - t273 * t404); /* link j6: derivatives */
     const wam7_real_t t423 = t56 * t418 - t39 * t417;
-    const wam7_real_t t424 = t11 * t280;
-    const wam7_real_t t425 = t423 + (t424 * t404 + t421 * t405);
-    const wam7_real_t t426 = t5 * t273 - t9 * t424;
-    const wam7_real_t t427 = t5 * t422 + t9 * t425 - (t426 * t389 + t421 * t392);
+    const wam7_real_t t424 = t11 * t280; /* link j6: column of the mass matrix */
+    const wam7_real_t t425 = t423 + (t424 * t404 + t421 * t405); /* link j6: derivatives */
+    const wam7_real_t t426 = t5 * t273 - t9 * t424; /* link j6: column of the mass matrix */
+    const wam7_real_t t427 = t5 * t422 + t9 * t425 - (t426 * t389 + t421 * t392); /* link j6: derivatives */
     const wam7_real_t t428 = t14 * t419 + t11 * t420 - (t273 * t405 + t424 * t401);
-    const wam7_real_t t429 = t5 * t424 + t9 * t273;
-    const wam7_real_t t430 = t428 + t429 * t392;
+    const wam7_real_t t429 = t5 * t424 + t9 * t273; /* link j6: column of the mass matrix */
+    const wam7_real_t t430 = t428 + t429 * t392; /* link j6: derivatives */
     const wam7_real_t t431 = t3 * t430 - t2 * t427 - t426 * t384;
     const wam7_real_t t432 = t5 * t425 - t9 * t422 + t429 * t389;
-    const wam7_real_t t433 = t2 * t429 - t3 * t421;
+    const wam7_real_t t433 = t2 * t429 - t3 * t421; /* link j6: column of the mass matrix */
     const wam7_real_t t434 = t3 * t429 + t2 * t421;
-    const wam7_real_t t435 = t432 + (t434 * t385 - t433 * t384);
+    const wam7_real_t t435 = t432 + (t434 * t385 - t433 * t384); /* link j6: derivatives */
     input_by_dq[35] = WAM7_C(0.4469713223199599) * (t0 * t431 + t6 * t435);
-    const wam7_real_t t436 = WAM7_C(2.0) * t230;
+    const wam7_real_t t436 = WAM7_C(2.0) * t230; /* link j7: derivatives */
     const wam7_real_t t437 = WAM7_C(2.0) * t231;
     const wam7_real_t t438 = t63 * t436 - t71 * t437;
     const wam7_real_t t439 = WAM7_C(2.0) * t227;
     const wam7_real_t t440 = t56 * t438 + t39 * t439;
     const wam7_real_t t441 = t71 * t436 + t63 * t437;
-    const wam7_real_t t442 = t56 * t269;
+    const wam7_real_t t442 = t56 * t269; /* link j7: column of the mass matrix */
     const wam7_real_t t443 = t11 * t271 - t14 * t442;
     const wam7_real_t t444 = t39 * t269;
-    const wam7_real_t t445 = t11 * t440 - t14 * t441 + (t444 * t404 - t443 * t401);
+    const wam7_real_t t445 = t11 * t440 - t14 * t441 + (t444 * t404 - t443 * t401); /* link j7: derivatives */
     const wam7_real_t t446 = t56 * t439 - t39 * t438;
-    const wam7_real_t t447 = t11 * t442 + t14 * t271;
-    const wam7_real_t t448 = t446 + (t447 * t404 - t443 * t405);
-    const wam7_real_t t449 = t9 * t447 + t5 * t444;
-    const wam7_real_t t450 = t5 * t445 + t9 * t448 + (t449 * t389 + t443 * t392);
+    const wam7_real_t t447 = t11 * t442 + t14 * t271; /* link j7: column of the mass matrix */
+    const wam7_real_t t448 = t446 + (t447 * t404 - t443 * t405); /* link j7: derivatives */
+    const wam7_real_t t449 = t9 * t447 + t5 * t444; /* link j7: column of the mass matrix */
+    const wam7_real_t t450 = t5 * t445 + t9 * t448 + (t449 * t389 + t443 * t392); /* link j7: derivatives */
     const wam7_real_t t451 = t14 * t440 + t11 * t441 + (t444 * t405 - t447 * t401);
-    const wam7_real_t t452 = t5 * t447 - t9 * t444;
-    const wam7_real_t t453 = t451 + t452 * t392;
+    const wam7_real_t t452 = t5 * t447 - t9 * t444; /* link j7: column of the mass matrix */
+    const wam7_real_t t453 = t451 + t452 * t392; /* link j7: derivatives */
     const wam7_real_t t454 = t3 * t453 - t2 * t450 + t449 * t384;
     const wam7_real_t t455 = t5 * t448 - t9 * t445 + t452 * t389;
-    const wam7_real_t t456 = t2 * t452 + t3 * t443;
+    const wam7_real_t t456 = t2 * t452 + t3 * t443; /* link j7: column of the mass matrix */
     const wam7_real_t t457 = t2 * t443 - t3 * t452;
-    const wam7_real_t t458 = t455 - (t456 * t384 + t457 * t385);
+    const wam7_real_t t458 = t455 - (t456 * t384 + t457 * t385); /* link j7: derivatives */
     input_by_dq[42] = WAM7_C(0.9996900960702182) * (t0 * t454 + t6 * t458);
+    /* link j7: inertia of it and all beyond */
     const wam7_real_t t459 = t63 * parameters[XX7R] + parameters[XY7] * (WAM7_C(-2.0) * t71);
     const wam7_real_t t460 = t63 * t459;
     const wam7_real_t t461 = parameters[XX6R] + t460;
+    /* link j7: column of the mass matrix */
     const wam7_real_t t462 = t63 * parameters[XZ7R] - t71 * parameters[YZ7R];
-    const wam7_real_t t463 = t462 - parameters[XY6];
+    const wam7_real_t t463 = t462 - parameters[XY6]; /* link j7: inertia of it and all beyond */
+    /* link j6: inertia of it and all beyond */
     const wam7_real_t t464 = t56 * (parameters[ZZ7] - t461) - t463 * (WAM7_C(2.0) * t39);
     const wam7_real_t t465 = t56 * t464;
     const wam7_real_t t466 = parameters[ZZ5R] + (t461 + t465);
-    const wam7_real_t t467 = WAM7_C(-0.09) * t275;
+    const wam7_real_t t467 = WAM7_C(-0.09) * t275; /* link j5: inertia of it and all beyond */
     const wam7_real_t t468 = t466 + t467;
+    /* link j6: inertia of it and all beyond */
     const wam7_real_t t469 = parameters[XX5R] + (parameters[ZZ7] - t465);
+    /* link j7: inertia of it and all beyond */
     const wam7_real_t t470 = t460 - parameters[XX7R] - parameters[ZZ6R];
     const wam7_real_t t471 = parameters[XZ6] + (parameters[XY7] + t71 * t459);
+    /* link j7: column of the mass matrix */
     const wam7_real_t t472 = t71 * parameters[XZ7R] + t63 * parameters[YZ7R];
-    const wam7_real_t t473 = parameters[YZ6] - t472;
-    const wam7_real_t t474 = t56 * t471 - t39 * t473;
-    const wam7_real_t t475 = parameters[XY5] + t474;
+    const wam7_real_t t473 = parameters[YZ6] - t472; /* link j7: inertia of it and all beyond */
+    const wam7_real_t t474 = t56 * t471 - t39 * t473; /* link j6: column of the mass matrix */
+    const wam7_real_t t475 = parameters[XY5] + t474; /* link j6: inertia of it and all beyond */
+    /* link j5: inertia of it and all beyond */
     const wam7_real_t t476 = t475 * (WAM7_C(2.0) * t14) - t11 * (t470 + t469);
     const wam7_real_t t477 = t11 * t476;
     const wam7_real_t t478 = WAM7_C(0.6) * t280;
     const wam7_real_t t479 = t470 + t477 + t478 - parameters[XX4R];
+    /* link j6: inertia of it and all beyond */
     const wam7_real_t t480 = parameters[XZ5] + (t463 + t39 * t464);
-    const wam7_real_t t481 = t39 * t471 + t56 * t473;
-    const wam7_real_t t482 = parameters[YZ5] - t481;
-    const wam7_real_t t483 = t11 * t480 - t14 * t482;
+    const wam7_real_t t481 = t39 * t471 + t56 * t473; /* link j6: column of the mass matrix */
+    const wam7_real_t t482 = parameters[YZ5] - t481; /* link j6: inertia of it and all beyond */
+    const wam7_real_t t483 = t11 * t480 - t14 * t482; /* link j5: column of the mass matrix */
     const wam7_real_t t484 = WAM7_C(-0.3) * t275;
+    /* link j5: inertia of it and all beyond */
     const wam7_real_t t485 = t483 + (t484 + WAM7_C(-0.045) * t280) - parameters[XY4R];
+    /* link j4: inertia of it and all beyond */
     const wam7_real_t t486 = t5 * (t468 + t479) - t485 * (WAM7_C(2.0) * t9);
     const wam7_real_t t487 = t5 * t486;
     const wam7_real_t t488 = parameters[XX3R] + (t468 - t487);
+    /* link j5: inertia of it and all beyond */
     const wam7_real_t t489 = parameters[ZZ4R] + (t469 + t477 + (t467 - t478));
-    const wam7_real_t t490 = WAM7_C(0.09) * t336;
+    const wam7_real_t t490 = WAM7_C(0.09) * t336; /* link j4: inertia of it and all beyond */
     const wam7_real_t t491 = t489 + t490;
-    const wam7_real_t t492 = WAM7_C(0.045) * t283;
+    const wam7_real_t t492 = WAM7_C(0.045) * t283; /* link j5: inertia of it and all beyond */
     const wam7_real_t t493 = parameters[XZ4] + (t475 - t14 * t476 + t492);
+    /* link j5: column of the mass matrix */
     const wam7_real_t t494 = t14 * t480 + t11 * t482 + WAM7_C(-0.3) * t283;
-    const wam7_real_t t495 = parameters[YZ4] - t494;
-    const wam7_real_t t496 = t5 * t493 - t9 * t495;
-    const wam7_real_t t497 = parameters[XY3R] - (t492 - t496);
+    const wam7_real_t t495 = parameters[YZ4] - t494; /* link j5: inertia of it and all beyond */
+    const wam7_real_t t496 = t5 * t493 - t9 * t495; /* link j4: column of the mass matrix */
+    const wam7_real_t t497 = parameters[XY3R] - (t492 - t496); /* link j4: inertia of it and all beyond */
+    /* link j3: inertia of it and all beyond */
     const wam7_real_t t498 = t2 * (t491 - t488) + t497 * (WAM7_C(2.0) * t3);
     const wam7_real_t t499 = t2 * t498;
     const wam7_real_t t500 = WAM7_C(-1.1) * t315;
     const wam7_real_t t501 = parameters[XX2R] + (t491 - t499 + t500);
+    /* link j4: inertia of it and all beyond */
     const wam7_real_t t502 = parameters[ZZ3R] + (t487 - t479 + t490);
     const wam7_real_t t503 = parameters[XZ3] + (t485 + t9 * t486 + WAM7_C(0.045) * t315);
-    const wam7_real_t t504 = t9 * t493 + t5 * t495;
-    const wam7_real_t t505 = parameters[YZ3] - t504;
+    const wam7_real_t t504 = t9 * t493 + t5 * t495; /* link j4: column of the mass matrix */
+    const wam7_real_t t505 = parameters[YZ3] - t504; /* link j4: inertia of it and all beyond */
+    /* link j3: column of the mass matrix */
     const wam7_real_t t506 = t3 * t505 - t2 * t503 + WAM7_C(0.55) * t344;
-    const wam7_real_t t507 = parameters[XY2] + t506;
+    const wam7_real_t t507 = parameters[XY2] + t506; /* link j3: inertia of it and all beyond */
+    /* link j2: inertia of it and all beyond */
     const wam7_real_t t508 = t6 * (t6 * (t502 - t501) + t507 * (WAM7_C(2.0) * t0));
     input_by_ddq[0] = WAM7_C(0.05209961446285298) * (parameters[ZZ1R] + (t501 + t508));
-    const wam7_real_t t509 = t3 * t498 - t497 - parameters[XZ2];
+    const wam7_real_t t509 = t3 * t498 - t497 - parameters[XZ2]; /* link j3: inertia of it and all beyond */
+    /* link j3: column of the mass matrix */
     const wam7_real_t t510 = WAM7_C(0.55) * t350 - (t3 * t503 + t2 * t505);
-    const wam7_real_t t511 = parameters[YZ2] + t510;
-    const wam7_real_t t512 = t0 * t509 - t6 * t511;
+    const wam7_real_t t511 = parameters[YZ2] + t510; /* link j3: inertia of it and all beyond */
+    const wam7_real_t t512 = t0 * t509 - t6 * t511; /* link j2: column of the mass matrix */
     input_by_ddq[7] = WAM7_C(0.07745783389167521) * t512;
-    const wam7_real_t t513 = t0 * t506 + t6 * t502;
+    const wam7_real_t t513 = t0 * t506 + t6 * t502; /* link j3: column of the mass matrix */
     input_by_ddq[14] = WAM7_C(0.07745783389167521) * t513;
-    const wam7_real_t t514 = t489 + WAM7_C(0.045) * t336;
+    const wam7_real_t t514 = t489 + WAM7_C(0.045) * t336; /* link j4: column of the mass matrix */
     const wam7_real_t t515 = t3 * t514 - t2 * t496 + WAM7_C(-0.55) * t397;
     const wam7_real_t t516 = t0 * t515 - t6 * t504;
     input_by_ddq[21] = WAM7_C(0.12156576707999026) * t516;
-    const wam7_real_t t517 = t483 + t484;
+    const wam7_real_t t517 = t483 + t484; /* link j5: column of the mass matrix */
     const wam7_real_t t518 = WAM7_C(0.045) * t275;
     const wam7_real_t t519 = t518 - t466;
     const wam7_real_t t520 = t5 * t517 - t9 * t519;
@@ -716,6 +796,7 @@ int wam7_inverse_dynamics_derivatives(
     const wam7_real_t t523 = t9 * t517 + t5 * t519 - t518;
     const wam7_real_t t524 = t0 * t522 - t6 * t523;
     input_by_ddq[28] = WAM7_C(0.4469713223199599) * t524;
+    /* link j6: column of the mass matrix */
     const wam7_real_t t525 = t11 * t474 + t14 * t470 + WAM7_C(0.3) * t421;
     const wam7_real_t t526 = WAM7_C(-0.045) * t421;
     const wam7_real_t t527 = t481 + t526;
@@ -726,7 +807,7 @@ int wam7_inverse_dynamics_derivatives(
     const wam7_real_t t532 = t9 * t525 + t5 * t527 - t526;
     const wam7_real_t t533 = t0 * t531 - t6 * t532;
     input_by_ddq[35] = WAM7_C(0.4469713223199599) * t533;
-    const wam7_real_t t534 = t56 * t462 + t39 * parameters[ZZ7];
+    const wam7_real_t t534 = t56 * t462 + t39 * parameters[ZZ7]; /* link j7: column of the mass matrix */
     const wam7_real_t t535 = t11 * t534 - t14 * t472 + WAM7_C(-0.3) * t443;
     const wam7_real_t t536 = WAM7_C(0.045) * t443;
     const wam7_real_t t537 = t39 * t462 - t56 * parameters[ZZ7];
@@ -738,50 +819,73 @@ int wam7_inverse_dynamics_derivatives(
     const wam7_real_t t543 = t9 * t535 + t5 * t538 - t536;
     const wam7_real_t t544 = t0 * t542 - t6 * t543;
     input_by_ddq[42] = WAM7_C(0.9996900960702182) * t544;
-    const wam7_real_t t545 = WAM7_C(2.0) * t7;
+    const wam7_real_t t545 = WAM7_C(2.0) * t7; /* link j2: derivatives */
     const wam7_real_t t546 = WAM7_C(-2.0) * t1;
-    const wam7_real_t t547 = t102 + t187;
+    const wam7_real_t t547 = t102 + t187; /* link j3: motion */
+    /* link j2: derivatives */
     const wam7_real_t t548 = t356 * t545 + t372 * t546 + (t501 * t20 - t507 * t27 - t509 * t547);
-    const wam7_real_t t549 = t502 * t27;
+    const wam7_real_t t549 = t502 * t27; /* link j3: derivatives */
+    /* link j2: derivatives */
     const wam7_real_t t550 = t365 * t545 + t359 * t546 + (t507 * t20 - t549 + t511 * t547);
-    const wam7_real_t t551 = t350 * t104;
+    const wam7_real_t t551 = t350 * t104; /* link j3: derivatives */
+    /* link j2: derivatives */
     const wam7_real_t t552 = t0 * (t194 + (t548 - t350 * t96)) + t6 * (t189 + (t551 + t550));
     input_by_q[1] = WAM7_C(0.05209961446285298) * t552;
+    /* link j3: inertia of it and all beyond */
     const wam7_real_t t553 = parameters[ZZ2R] + (t488 + t499 + t500);
+    /* link j2: derivatives */
     const wam7_real_t t554 = t509 * t20 + t511 * t27 - t553 * t547 + (t7 * t376 + t1 * t379);
     const wam7_real_t t555 = (parameters[MY2R] + t315) * t104 - (parameters[MX2] + t344) * t96 + t554;
     input_by_q[8] = WAM7_C(0.07745783389167521) * t555;
+    /* link j3: derivatives */
     const wam7_real_t t556 = t7 * t382 + t1 * t386 + (t506 * t20 - t549 + t510 * t547);
     input_by_q[15] = WAM7_C(0.07745783389167521) * (t556 + t551);
+    /* link j4: column of the mass matrix */
     const wam7_real_t t557 = t3 * t496 + t2 * t514 + WAM7_C(-0.55) * t396;
+    /* link j4: derivatives */
     const wam7_real_t t558 = t7 * t394 - t1 * t398 + (t515 * t20 + t504 * t27 - t557 * t547);
     input_by_q[22] = WAM7_C(0.12156576707999026) * (t558 + (t396 * t104 - t336 * t96));
+    /* link j5: column of the mass matrix */
     const wam7_real_t t559 = t3 * t520 + t2 * t521 + WAM7_C(-0.55) * t414;
+    /* link j5: derivatives */
     const wam7_real_t t560 = t7 * t412 - t1 * t416 + (t522 * t20 + t523 * t27 - t559 * t547);
     input_by_q[29] = WAM7_C(0.4469713223199599) * (t560 + (t414 * t104 + t407 * t96));
+    /* link j6: column of the mass matrix */
     const wam7_real_t t561 = t3 * t528 + t2 * t530 + WAM7_C(-0.55) * t433;
+    /* link j6: derivatives */
     const wam7_real_t t562 = t7 * t431 - t1 * t435 + (t531 * t20 + t532 * t27 - t561 * t547);
     input_by_q[36] = WAM7_C(0.4469713223199599) * (t562 + (t433 * t104 - t426 * t96));
+    /* link j7: column of the mass matrix */
     const wam7_real_t t563 = t3 * t539 + t2 * t541 + WAM7_C(-0.55) * t456;
+    /* link j7: derivatives */
     const wam7_real_t t564 = t7 * t454 - t1 * t458 + (t542 * t20 + t543 * t27 - t563 * t547);
     input_by_q[43] = WAM7_C(0.9996900960702182) * (t564 + (t456 * t104 + t449 * t96));
     const wam7_real_t t565 = parameters[ZZ2R] - t363;
+    /* link j3: inertia, momentum beyond */
     const wam7_real_t t566 = parameters[YZ2] * dq[1] + t7 * t565 + (t374 - t330 + t350 * t345);
+    /* link j2: derivatives */
     const wam7_real_t t567 = t0 * (WAM7_C(2.0) * t566 + (t501 * t545 + t507 * t546));
+    /* link j3: inertia, momentum beyond */
     const wam7_real_t t568 = t3 * t361 + t2 * t362 - (parameters[XZ2] * dq[1] + t1 * t565);
+    /* link j2: derivatives */
     const wam7_real_t t569 = t6 * (WAM7_C(2.0) * t568 + (t507 * t545 + t502 * t546));
     input_by_dq[1] = WAM7_C(0.05209961446285298) * (t567 + t569);
     const wam7_real_t t570 = WAM7_C(2.0) * (t354 - t358 + (t353 + (t321 + t341 + t352)));
     const wam7_real_t t571 = WAM7_C(0.07745783389167521) * (t570 + WAM7_C(2.0) * (t509 * t7 + t511 * t1));
     input_by_dq[8] = WAM7_C(61.81619256017505) * parameters[FV2] + t571;
+    /* link j3: derivatives */
     const wam7_real_t t572 = t3 * t380 + t2 * t381 + WAM7_C(2.0) * (t506 * t7 - t502 * t1);
     input_by_dq[15] = WAM7_C(0.07745783389167521) * t572;
+    /* link j4: derivatives */
     const wam7_real_t t573 = t3 * t390 + t2 * t393 - t336 * t385 + WAM7_C(2.0) * (t515 * t7 + t504 * t1);
     input_by_dq[22] = WAM7_C(0.12156576707999026) * t573;
+    /* link j5: derivatives */
     const wam7_real_t t574 = t3 * t408 + t2 * t411 + t407 * t385 + WAM7_C(2.0) * (t522 * t7 + t523 * t1);
     input_by_dq[29] = WAM7_C(0.4469713223199599) * t574;
+    /* link j6: derivatives */
     const wam7_real_t t575 = t3 * t427 + t2 * t430 - t426 * t385 + WAM7_C(2.0) * (t531 * t7 + t532 * t1);
     input_by_dq[36] = WAM7_C(0.4469713223199599) * t575;
+    /* link j7: derivatives */
     const wam7_real_t t576 = t3 * t450 + t2 * t453 + t449 * t385 + WAM7_C(2.0) * (t542 * t7 + t543 * t1);
     input_by_dq[43] = WAM7_C(0.9996900960702182) * t576;
     input_by_ddq[1] = WAM7_C(0.05209961446285298) * t512;
@@ -792,14 +896,15 @@ int wam7_inverse_dynamics_derivatives(
     input_by_ddq[29] = WAM7_C(0.4469713223199599) * t559;
     input_by_ddq[36] = WAM7_C(0.4469713223199599) * t561;
     input_by_ddq[43] = WAM7_C(0.9996900960702182) * t563;
-    const wam7_real_t t578 = WAM7_C(2.0) * t12;
+    const wam7_real_t t578 = WAM7_C(2.0) * t12; /* link j3: derivatives */
     const wam7_real_t t579 = WAM7_C(2.0) * t4;
-    const wam7_real_t t580 = t180 + t93;
+    const wam7_real_t t580 = t180 + t93; /* link j4: motion */
+    /* link j3: derivatives */
     const wam7_real_t t581 = t321 * t578 + t330 * t579 + (t488 * t42 + t497 * t30 - t503 * t580);
     const wam7_real_t t582 = t581 - t315 * t99 - t181;
     const wam7_real_t t583 = t339 * t578 + t324 * t579 + (t497 * t42 + t491 * t30 - t505 * t580);
-    const wam7_real_t t584 = t315 * t110;
-    const wam7_real_t t585 = t170 + (t584 + t583);
+    const wam7_real_t t584 = t315 * t110; /* link j4: derivatives */
+    const wam7_real_t t585 = t170 + (t584 + t583); /* link j3: derivatives */
     const wam7_real_t t586 = t184 + (t348 * t579 + (t342 * t580 - t315 * t30));
     const wam7_real_t t587 = t348 * t578 + (t343 * t580 - t315 * t42) - t182;
     const wam7_real_t t588 = t3 * t585 - t2 * t582 + WAM7_C(0.55) * (t3 * t586 - t2 * t587);
@@ -811,15 +916,19 @@ int wam7_inverse_dynamics_derivatives(
     input_by_q[9] = WAM7_C(0.07745783389167521) * t592;
     const wam7_real_t t593 = WAM7_C(0.07745783389167521) * (t590 + (t589 + (t12 * t380 + t4 * t381)));
     input_by_q[16] = t593;
+    /* link j4: derivatives */
     const wam7_real_t t594 = t12 * t390 + t4 * t393 + (t496 * t42 + t514 * t30 + t504 * t580);
     input_by_q[23] = WAM7_C(0.12156576707999026) * (t594 + t584);
+    /* link j5: derivatives */
     const wam7_real_t t595 = t12 * t408 + t4 * t411 + (t520 * t42 + t521 * t30 + t523 * t580);
     input_by_q[30] = WAM7_C(0.4469713223199599) * (t595 + (t410 * t110 - t275 * t99));
+    /* link j6: derivatives */
     const wam7_real_t t596 = t12 * t427 + t4 * t430 + (t528 * t42 + t530 * t30 + t532 * t580);
     input_by_q[37] = WAM7_C(0.4469713223199599) * (t596 + (t429 * t110 + t421 * t99));
+    /* link j7: derivatives */
     const wam7_real_t t597 = t12 * t450 + t4 * t453 + (t539 * t42 + t541 * t30 + t543 * t580);
     input_by_q[44] = WAM7_C(0.9996900960702182) * (t597 + (t452 * t110 - t443 * t99));
-    const wam7_real_t t598 = WAM7_C(2.0) * t367 - (t488 * t578 + t497 * t579);
+    const wam7_real_t t598 = WAM7_C(2.0) * t367 - (t488 * t578 + t497 * t579); /* link j3: derivatives */
     const wam7_real_t t599 = WAM7_C(2.0) * t368 + (t497 * t578 + t491 * t579);
     const wam7_real_t t600 = WAM7_C(2.0) * t370 - t315 * t579;
     const wam7_real_t t601 = WAM7_C(-2.0) * t369 - t315 * t578;
@@ -845,14 +954,15 @@ int wam7_inverse_dynamics_derivatives(
     input_by_ddq[30] = WAM7_C(-0.4469713223199599) * t523;
     input_by_ddq[37] = WAM7_C(-0.4469713223199599) * t532;
     input_by_ddq[44] = WAM7_C(-0.9996900960702182) * t543;
-    const wam7_real_t t610 = WAM7_C(2.0) * t40;
+    const wam7_real_t t610 = WAM7_C(2.0) * t40; /* link j4: derivatives */
     const wam7_real_t t611 = WAM7_C(-2.0) * t10;
-    const wam7_real_t t612 = t115 + t90;
+    const wam7_real_t t612 = t115 + t90; /* link j5: motion */
+    /* link j4: derivatives */
     const wam7_real_t t613 = t304 * t611 - t289 * t610 + (t479 * t34 + t485 * t47 + t493 * t612);
     const wam7_real_t t614 = t168 + (t613 - t283 * t107);
     const wam7_real_t t615 = t292 * t611 - t299 * t610 + (t485 * t34 - t468 * t47 + t495 * t612);
-    const wam7_real_t t616 = t283 * t118;
-    const wam7_real_t t617 = t616 + t615 - t163;
+    const wam7_real_t t616 = t283 * t118; /* link j5: derivatives */
+    const wam7_real_t t617 = t616 + t615 - t163; /* link j4: derivatives */
     const wam7_real_t t618 = t9 * t617 - t5 * t614;
     const wam7_real_t t619 = t335 * t610 + (t313 * t612 + t283 * t34) - t177;
     const wam7_real_t t620 = t178 + (t335 * t611 + (t283 * t47 + t314 * t612));
@@ -870,13 +980,16 @@ int wam7_inverse_dynamics_derivatives(
     input_by_q[17] = WAM7_C(0.07745783389167521) * t627;
     const wam7_real_t t629 = WAM7_C(0.12156576707999026) * (t622 + (t621 - (t40 * t387 + t10 * t388)));
     input_by_q[24] = t629;
+    /* link j5: derivatives */
     const wam7_real_t t630 = t517 * t34 + t519 * t47 - t494 * t612 - (t40 * t402 + t10 * t406);
     input_by_q[31] = WAM7_C(0.4469713223199599) * (t630 + t616);
+    /* link j6: derivatives */
     const wam7_real_t t631 = t525 * t34 + t527 * t47 - t529 * t612 - (t40 * t422 + t10 * t425);
     input_by_q[38] = WAM7_C(0.4469713223199599) * (t631 + (t424 * t118 - t273 * t107));
+    /* link j7: derivatives */
     const wam7_real_t t632 = t535 * t34 + t538 * t47 - t540 * t612 - (t40 * t445 + t10 * t448);
     input_by_q[45] = WAM7_C(0.9996900960702182) * (t632 + (t447 * t118 + t444 * t107));
-    const wam7_real_t t633 = WAM7_C(2.0) * t327 - (t479 * t610 + t485 * t611);
+    const wam7_real_t t633 = WAM7_C(2.0) * t327 - (t479 * t610 + t485 * t611); /* link j4: derivatives */
     const wam7_real_t t634 = WAM7_C(2.0) * t328 + (t468 * t611 - t485 * t610);
     const wam7_real_t t635 = t5 * t633 - t9 * t634;
     const wam7_real_t t636 = WAM7_C(2.0) * t307 - t283 * t610;
@@ -905,15 +1018,17 @@ int wam7_inverse_dynamics_derivatives(
     input_by_ddq[31] = WAM7_C(0.4469713223199599) * t494;
     input_by_ddq[38] = WAM7_C(0.4469713223199599) * t529;
     input_by_ddq[45] = WAM7_C(0.9996900960702182) * t540;
-    const wam7_real_t t648 = WAM7_C(2.0) * t16;
+    const wam7_real_t t648 = WAM7_C(2.0) * t16; /* link j5: derivatives */
     const wam7_real_t t649 = WAM7_C(-2.0) * t15;
-    const wam7_real_t t650 = t152 + t145;
+    const wam7_real_t t650 = t152 + t145; /* link j6: motion */
+    /* link j5: derivatives */
     const wam7_real_t t651 = t243 * t648 + t252 * t649 + (t469 * t64 - t475 * t51 - t480 * t650);
     const wam7_real_t t652 = t651 - t280 * t114 - t153;
-    const wam7_real_t t653 = t470 * t51;
+    const wam7_real_t t653 = t470 * t51; /* link j6: derivatives */
+    /* link j5: derivatives */
     const wam7_real_t t654 = t256 * t648 + t246 * t649 + (t653 + t475 * t64 - t482 * t650);
-    const wam7_real_t t655 = t280 * t132;
-    const wam7_real_t t656 = t147 + (t655 + t654);
+    const wam7_real_t t655 = t280 * t132; /* link j6: derivatives */
+    const wam7_real_t t656 = t147 + (t655 + t654); /* link j5: derivatives */
     const wam7_real_t t657 = t160 + (t278 * t649 + (t280 * t51 + t270 * t650));
     const wam7_real_t t658 = t158 + (t278 * t648 + (t274 * t650 - t280 * t64));
     const wam7_real_t t659 = t14 * t657 - t11 * t658;
@@ -937,11 +1052,13 @@ int wam7_inverse_dynamics_derivatives(
     input_by_q[25] = WAM7_C(0.12156576707999026) * t668;
     const wam7_real_t t674 = WAM7_C(0.4469713223199599) * (t663 + (t662 + (t16 * t399 - t15 * t400)));
     input_by_q[32] = t674;
+    /* link j6: derivatives */
     const wam7_real_t t675 = t16 * t419 - t15 * t420 + (t474 * t64 + t653 + t481 * t650);
     input_by_q[39] = WAM7_C(0.4469713223199599) * (t675 + t655);
+    /* link j7: derivatives */
     const wam7_real_t t676 = t16 * t440 - t15 * t441 + (t534 * t64 - t472 * t51 + t537 * t650);
     input_by_q[46] = WAM7_C(0.9996900960702182) * (t676 + (t442 * t132 - t271 * t114));
-    const wam7_real_t t677 = WAM7_C(2.0) * t301 - (t469 * t648 + t475 * t649);
+    const wam7_real_t t677 = WAM7_C(2.0) * t301 - (t469 * t648 + t475 * t649); /* link j5: derivatives */
     const wam7_real_t t678 = WAM7_C(2.0) * t302 + (t475 * t648 - t470 * t649);
     const wam7_real_t t679 = WAM7_C(-2.0) * t266 - t280 * t649;
     const wam7_real_t t680 = WAM7_C(2.0) * t264 - t280 * t648;
@@ -976,15 +1093,16 @@ int wam7_inverse_dynamics_derivatives(
     const wam7_real_t t697 = WAM7_C(-0.4469713223199599) * t481;
     input_by_ddq[39] = t697;
     input_by_ddq[46] = WAM7_C(-0.9996900960702182) * t537;
-    const wam7_real_t t698 = t140 + t130;
-    const wam7_real_t t699 = WAM7_C(2.0) * t58;
+    const wam7_real_t t698 = t140 + t130; /* link j7: motion */
+    const wam7_real_t t699 = WAM7_C(2.0) * t58; /* link j6: derivatives */
     const wam7_real_t t700 = WAM7_C(2.0) * t68;
     const wam7_real_t t701 = t238 * t700 - t226 * t699 + (t471 * t698 - (t461 * t81 + t463 * t57));
     const wam7_real_t t702 = t141 + (t701 + t269 * t134);
-    const wam7_real_t t703 = parameters[ZZ7] * t57;
+    const wam7_real_t t703 = parameters[ZZ7] * t57; /* link j7: derivatives */
+    /* link j6: derivatives */
     const wam7_real_t t704 = t229 * t700 - t234 * t699 + (t703 + t463 * t81 + t473 * t698);
-    const wam7_real_t t705 = t269 * t120;
-    const wam7_real_t t706 = t705 + t704 - t133;
+    const wam7_real_t t705 = t269 * t120; /* link j7: derivatives */
+    const wam7_real_t t706 = t705 + t704 - t133; /* link j6: derivatives */
     const wam7_real_t t707 = t39 * t706 - t56 * t702;
     const wam7_real_t t708 = t471 * t81 - t473 * t57 + t470 * t698;
     const wam7_real_t t709 = t272 * t134 + parameters[MY6R] * t120;
@@ -1014,9 +1132,10 @@ int wam7_inverse_dynamics_derivatives(
     input_by_q[33] = WAM7_C(0.4469713223199599) * t717;
     const wam7_real_t t729 = WAM7_C(0.4469713223199599) * (t709 + (t708 + (t68 * t418 - t58 * t417)));
     input_by_q[40] = t729;
+    /* link j7: derivatives */
     const wam7_real_t t730 = t68 * t439 - t58 * t438 + (t462 * t81 + t703 - t472 * t698);
     input_by_q[47] = WAM7_C(0.9996900960702182) * (t730 + t705);
-    const wam7_real_t t731 = WAM7_C(2.0) * t249 + (t461 * t699 - t463 * t700);
+    const wam7_real_t t731 = WAM7_C(2.0) * t249 + (t461 * t699 - t463 * t700); /* link j6: derivatives */
     const wam7_real_t t732 = WAM7_C(2.0) * t250 + (parameters[ZZ7] * t700 - t463 * t699);
     const wam7_real_t t733 = t56 * t731 - t39 * t732;
     const wam7_real_t t734 = t420 - (t471 * t699 + t473 * t700);
@@ -1055,8 +1174,8 @@ int wam7_inverse_dynamics_derivatives(
     input_by_ddq[33] = t697;
     input_by_ddq[40] = WAM7_C(40.16949152542373) * parameters[IA6] + WAM7_C(-0.4469713223199599) * t470;
     input_by_ddq[47] = WAM7_C(0.9996900960702182) * t472;
-    const wam7_real_t t755 = t125 + t88;
-    const wam7_real_t t756 = WAM7_C(-2.0) * t73;
+    const wam7_real_t t755 = t125 + t88; /* link j7: force and moment */
+    const wam7_real_t t756 = WAM7_C(-2.0) * t73; /* link j7: derivatives */
     const wam7_real_t t757 = WAM7_C(-2.0) * t78;
     const wam7_real_t t758 = parameters[XX7R] * t77 - parameters[XY7] * t72 - parameters[XZ7R] * t755
         - (t215 * t756 + t221 * t757);

@@ -7,16 +7,16 @@
  * Arm wam7, description 552353c9ea1f05cf.
  * SPDX-License-Identifier: 0BSD
  *
- * Operations: 3411 (1910 mul, 1501 add, 0 neg), 12 trig, 7 other.
+ * Operations: 3411 (1910 mul, 1501 add, 0 neg), 12 trig, 7 other calls (sign, select and the like).
  *
- * @param[in]   q             [7]   [rad]                joint coordinates; norm at most 10000
- * @param[in]   dq            [7]   [rad/s]              joint velocities; norm at most 100000
- * @param[in]   ddq           [7]   [rad/s^2]            joint accelerations; norm at most 1e+08
- * @param[in]   parameters    [91]                       standard parameters; norm at most 1e+09
- * @param[out]  input         [7]   [A]                  inputs: motor currents, efforts where undriven
- * @param[out]  input_by_q    [49]  [(A) per (rad)]      d input / d q; 7 x 7, row-major
- * @param[out]  input_by_dq   [49]  [(A) per (rad/s)]    d input / d dq; 7 x 7, row-major
- * @param[out]  input_by_ddq  [49]  [(A) per (rad/s^2)]  d input / d ddq; 7 x 7, row-major
+ * @param[in]   q             [7]   [rad]              joint coordinates; norm at most 10000
+ * @param[in]   dq            [7]   [rad/s]            joint velocities; norm at most 100000
+ * @param[in]   ddq           [7]   [rad/s^2]          joint accelerations; norm at most 1e+08
+ * @param[in]   parameters    [91]                     standard parameters; norm at most 1e+09
+ * @param[out]  input         [7]   [A]                inputs: motor currents, efforts where undriven
+ * @param[out]  input_by_q    [49]  [A per rad]        d input / d q; 7 x 7, row-major
+ * @param[out]  input_by_dq   [49]  [A per (rad/s)]    d input / d dq; 7 x 7, row-major
+ * @param[out]  input_by_ddq  [49]  [A per (rad/s^2)]  d input / d ddq; 7 x 7, row-major
  *
  * Coordinates:
  *
@@ -124,11 +124,11 @@
  */
 #include "wam7_private.h"
 
-#if WAM7_GENERATION != 0x7A21915FUL
+#if WAM7_GENERATION != 0x0E2B7B26UL
 #error "wam7.h and wam7_inverse_dynamics_derivatives_standard.c are of different generations: generate the arm again"
 #endif
 
-int wam7_inverse_dynamics_derivatives_standard(
+wam7_status_t wam7_inverse_dynamics_derivatives_standard(
     const wam7_real_t q[WAM7_N_JOINTS],
     const wam7_real_t dq[WAM7_N_JOINTS],
     const wam7_real_t ddq[WAM7_N_JOINTS],
@@ -143,7 +143,7 @@ int wam7_inverse_dynamics_derivatives_standard(
         XX5, XY5, XZ5, YY5, YZ5, ZZ5, MX5, MY5, MZ5, M5, XX6, XY6, XZ6, YY6, YZ6, ZZ6, MX6, MY6, MZ6, M6, XX7,
         XY7, XZ7, YY7, YZ7, ZZ7, MX7, MY7, MZ7, M7, FV1, FC1, IA1, FV2, FC2, IA2, FV3, FC3, IA3, FV4, FC4,
         IA4, FV5, FC5, IA5, FV6, FC6, IA6, FV7, FC7, IA7 };
-    int status = WAM7_STATUS_OK;
+    wam7_status_t status = WAM7_STATUS_OK;
 
     if (!wam7_within_joints(q, WAM7_C(1.0e8))
         || !wam7_within_joints(dq, WAM7_C(1.0e10))
@@ -171,66 +171,66 @@ int wam7_inverse_dynamics_derivatives_standard(
     WAM7_SINCOS(q[5], &t39, &t56);
     wam7_real_t t71, t63;
     WAM7_SINCOS(q[6], &t71, &t63);
-    const wam7_real_t t1 = t0 * dq[0];
-    const wam7_real_t t4 = t3 * dq[1] - t2 * t1;
+    const wam7_real_t t1 = t0 * dq[0]; /* link j2: motion */
+    const wam7_real_t t4 = t3 * dq[1] - t2 * t1; /* link j3: motion */
     const wam7_real_t t5 = t3 * t1 + t2 * dq[1];
     const wam7_real_t t6 = t4 * t5;
-    const wam7_real_t t8 = t7 * ddq[0];
+    const wam7_real_t t8 = t7 * ddq[0]; /* link j2: motion */
     const wam7_real_t t9 = dq[1] * t1;
     const wam7_real_t t10 = t9 - t8;
-    const wam7_real_t t11 = t10 - ddq[2];
-    const wam7_real_t t12 = t11 + t6;
-    const wam7_real_t t14 = t7 * dq[0];
+    const wam7_real_t t11 = t10 - ddq[2]; /* link j3: motion */
+    const wam7_real_t t12 = t11 + t6; /* link j4: motion */
+    const wam7_real_t t14 = t7 * dq[0]; /* link j2: motion */
     const wam7_real_t t15 = t1 * t14;
-    const wam7_real_t t16 = ddq[1] - t15;
-    const wam7_real_t t17 = t0 * ddq[0];
+    const wam7_real_t t16 = ddq[1] - t15; /* link j3: motion */
+    const wam7_real_t t17 = t0 * ddq[0]; /* link j2: motion */
     const wam7_real_t t18 = dq[1] * t14;
     const wam7_real_t t19 = t17 + t18;
-    const wam7_real_t t20 = t18 + t19;
+    const wam7_real_t t20 = t18 + t19; /* link j3: motion */
     const wam7_real_t t21 = t2 * t20 - t3 * t16;
     const wam7_real_t t22 = dq[2] + t14;
     const wam7_real_t t23 = t5 * t22;
     const wam7_real_t t24 = t23 - t21;
-    const wam7_real_t t25 = t23 + t24;
+    const wam7_real_t t25 = t23 + t24; /* link j4: motion */
     const wam7_real_t t27 = t13 * t12 - t26 * t25;
     const wam7_real_t t28 = t13 * t4 - t26 * t22;
     const wam7_real_t t29 = dq[3] + t5;
     const wam7_real_t t30 = t28 * t29;
     const wam7_real_t t31 = t27 - t30;
-    const wam7_real_t t32 = t31 - ddq[4];
+    const wam7_real_t t32 = t31 - ddq[4]; /* link j5: motion */
     const wam7_real_t t35 = t33 * t28 + t34 * t29;
     const wam7_real_t t36 = t33 * t29 - t34 * t28;
     const wam7_real_t t37 = t35 * t36;
-    const wam7_real_t t38 = t32 + t37;
-    const wam7_real_t t40 = t2 * t16 + t3 * t20;
+    const wam7_real_t t38 = t32 + t37; /* link j6: motion */
+    const wam7_real_t t40 = t2 * t16 + t3 * t20; /* link j3: motion */
     const wam7_real_t t41 = t4 * t22;
     const wam7_real_t t42 = t40 - t41;
-    const wam7_real_t t43 = ddq[3] + t42;
+    const wam7_real_t t43 = ddq[3] + t42; /* link j4: motion */
     const wam7_real_t t44 = t26 * t4 + t13 * t22;
     const wam7_real_t t45 = t28 * t44;
-    const wam7_real_t t46 = t43 + t45;
-    const wam7_real_t t47 = t26 * t12 + t13 * t25;
+    const wam7_real_t t46 = t43 + t45; /* link j5: motion */
+    const wam7_real_t t47 = t26 * t12 + t13 * t25; /* link j4: motion */
     const wam7_real_t t48 = t44 * t29;
     const wam7_real_t t49 = t48 - t47;
-    const wam7_real_t t50 = t48 + t49;
+    const wam7_real_t t50 = t48 + t49; /* link j5: motion */
     const wam7_real_t t51 = t33 * t50 - t34 * t46;
     const wam7_real_t t52 = dq[4] + t44;
     const wam7_real_t t53 = t36 * t52;
     const wam7_real_t t54 = t53 - t51;
-    const wam7_real_t t55 = t53 + t54;
+    const wam7_real_t t55 = t53 + t54; /* link j6: motion */
     const wam7_real_t t57 = t39 * t38 + t56 * t55;
     const wam7_real_t t58 = t39 * t35 + t56 * t52;
     const wam7_real_t t59 = dq[5] + t36;
     const wam7_real_t t60 = t58 * t59;
     const wam7_real_t t61 = t60 - t57;
-    const wam7_real_t t62 = t60 + t61;
-    const wam7_real_t t64 = t33 * t46 + t34 * t50;
+    const wam7_real_t t62 = t60 + t61; /* link j7: motion */
+    const wam7_real_t t64 = t33 * t46 + t34 * t50; /* link j5: motion */
     const wam7_real_t t65 = t35 * t52;
     const wam7_real_t t66 = t64 - t65;
-    const wam7_real_t t67 = ddq[5] + t66;
+    const wam7_real_t t67 = ddq[5] + t66; /* link j6: motion */
     const wam7_real_t t68 = t39 * t52 - t56 * t35;
     const wam7_real_t t69 = t68 * t58;
-    const wam7_real_t t70 = t67 - t69;
+    const wam7_real_t t70 = t67 - t69; /* link j7: motion */
     const wam7_real_t t72 = t71 * t70 - t63 * t62;
     const wam7_real_t t73 = t71 * t68 + t63 * t59;
     const wam7_real_t t74 = dq[6] + t58;
@@ -240,67 +240,70 @@ int wam7_inverse_dynamics_derivatives_standard(
     const wam7_real_t t78 = t71 * t59 - t63 * t68;
     const wam7_real_t t79 = t78 * t74;
     const wam7_real_t t80 = t77 - t79;
-    const wam7_real_t t81 = t80 - t79;
+    const wam7_real_t t81 = t80 - t79; /* link j7: columns */
+    /* link j7: force and moment */
     const wam7_real_t t82 = t75 * (parameters[ZZ7] - parameters[YY7]) + t76 * parameters[XX7]
         + t81 * parameters[XY7];
-    const wam7_real_t t83 = t56 * t38 - t39 * t55;
+    const wam7_real_t t83 = t56 * t38 - t39 * t55; /* link j6: motion */
     const wam7_real_t t84 = t68 * t59;
     const wam7_real_t t85 = t83 + t84;
-    const wam7_real_t t86 = ddq[6] - t85;
+    const wam7_real_t t86 = ddq[6] - t85; /* link j7: motion */
     const wam7_real_t t87 = t78 * t73;
-    const wam7_real_t t88 = t86 + t87;
-    const wam7_real_t t89 = t73 * t73;
+    const wam7_real_t t88 = t86 + t87; /* link j7: columns */
+    const wam7_real_t t89 = t73 * t73; /* link j7: motion */
     const wam7_real_t t90 = t74 * t74;
-    const wam7_real_t t91 = t44 * t44;
+    const wam7_real_t t91 = t44 * t44; /* link j4: motion */
     const wam7_real_t t92 = t29 * t29;
-    const wam7_real_t t93 = t91 + t92;
-    const wam7_real_t t94 = WAM7_C(-9.81) * t0;
-    const wam7_real_t t95 = t94 + WAM7_C(0.55) * t16;
+    const wam7_real_t t93 = t91 + t92; /* link j5: motion */
+    const wam7_real_t t94 = WAM7_C(-9.81) * t0; /* link j2: motion */
+    const wam7_real_t t95 = t94 + WAM7_C(0.55) * t16; /* link j3: motion */
     const wam7_real_t t96 = WAM7_C(0.55) * t20;
     const wam7_real_t t97 = t2 * t95 + t3 * t96;
     const wam7_real_t t98 = t5 * t5;
     const wam7_real_t t99 = t22 * t22;
-    const wam7_real_t t100 = t98 + t99;
+    const wam7_real_t t100 = t98 + t99; /* link j4: motion */
     const wam7_real_t t101 = t97 + WAM7_C(-0.045) * t100;
     const wam7_real_t t102 = t42 - t41;
-    const wam7_real_t t103 = t1 * t1;
+    const wam7_real_t t103 = t1 * t1; /* link j2: motion */
     const wam7_real_t t104 = dq[1] * dq[1];
     const wam7_real_t t105 = WAM7_C(9.81) * t7;
-    const wam7_real_t t106 = t105 - WAM7_C(0.55) * (t103 + t104);
-    const wam7_real_t t107 = t106 - WAM7_C(0.045) * t102;
+    const wam7_real_t t106 = t105 - WAM7_C(0.55) * (t103 + t104); /* link j3: motion */
+    const wam7_real_t t107 = t106 - WAM7_C(0.045) * t102; /* link j4: motion */
     const wam7_real_t t108 = t13 * t101 - t26 * t107;
-    const wam7_real_t t109 = t108 + (WAM7_C(0.045) * t93 + WAM7_C(0.3) * t46);
+    const wam7_real_t t109 = t108 + (WAM7_C(0.045) * t93 + WAM7_C(0.3) * t46); /* link j5: motion */
     const wam7_real_t t110 = t31 - t30;
-    const wam7_real_t t111 = t3 * t95 - t2 * t96;
-    const wam7_real_t t112 = t11 - t6;
+    const wam7_real_t t111 = t3 * t95 - t2 * t96; /* link j3: motion */
+    const wam7_real_t t112 = t11 - t6; /* link j4: motion */
     const wam7_real_t t113 = t111 + WAM7_C(0.045) * t112;
-    const wam7_real_t t114 = WAM7_C(0.045) * t110 - WAM7_C(-0.3) * t50 - t113;
+    const wam7_real_t t114 = WAM7_C(0.045) * t110 - WAM7_C(-0.3) * t50 - t113; /* link j5: motion */
     const wam7_real_t t115 = t34 * t109 - t33 * t114;
-    const wam7_real_t t116 = t115 + WAM7_C(-0.06) * t62;
-    const wam7_real_t t117 = t33 * t109 + t34 * t114;
+    const wam7_real_t t116 = t115 + WAM7_C(-0.06) * t62; /* link j7: motion */
+    const wam7_real_t t117 = t33 * t109 + t34 * t114; /* link j5: motion */
     const wam7_real_t t118 = t43 - t45;
-    const wam7_real_t t119 = t28 * t28;
-    const wam7_real_t t120 = t119 + t92;
-    const wam7_real_t t121 = t26 * t101 + t13 * t107;
-    const wam7_real_t t122 = t121 + (WAM7_C(0.045) * t118 + WAM7_C(-0.3) * t120);
-    const wam7_real_t t123 = t39 * t122 - t56 * t117;
-    const wam7_real_t t124 = WAM7_C(0.06) * t70 - t123;
+    const wam7_real_t t119 = t28 * t28; /* link j4: motion */
+    const wam7_real_t t120 = t119 + t92; /* link j5: motion */
+    const wam7_real_t t121 = t26 * t101 + t13 * t107; /* link j4: motion */
+    const wam7_real_t t122 = t121 + (WAM7_C(0.045) * t118 + WAM7_C(-0.3) * t120); /* link j5: motion */
+    const wam7_real_t t123 = t39 * t122 - t56 * t117; /* link j6: motion */
+    const wam7_real_t t124 = WAM7_C(0.06) * t70 - t123; /* link j7: motion */
     const wam7_real_t t125 = t71 * t124 + t63 * t116;
-    const wam7_real_t t126 = t125 * parameters[MZ7];
-    const wam7_real_t t127 = t39 * t117 + t56 * t122;
+    const wam7_real_t t126 = t125 * parameters[MZ7]; /* link j7: force and moment */
+    const wam7_real_t t127 = t39 * t117 + t56 * t122; /* link j6: motion */
     const wam7_real_t t128 = t68 * t68;
     const wam7_real_t t129 = t59 * t59;
-    const wam7_real_t t130 = t128 + t129;
+    const wam7_real_t t130 = t128 + t129; /* link j7: motion */
     const wam7_real_t t131 = t127 + WAM7_C(-0.06) * t130;
+    /* link j7: force and moment */
     const wam7_real_t t132 = (t89 - t90) * parameters[YZ7] + (t82 + t88 * parameters[XZ7])
         + (t131 * parameters[MY7] + t126);
-    const wam7_real_t t133 = t75 + t76;
+    const wam7_real_t t133 = t75 + t76; /* link j7: columns */
+    /* link j7: force and moment */
     const wam7_real_t t134 = t80 * parameters[YY7] - t79 * (parameters[ZZ7] - parameters[XX7])
         + t133 * parameters[XY7];
-    const wam7_real_t t135 = t86 - t87;
-    const wam7_real_t t136 = t78 * t78;
+    const wam7_real_t t135 = t86 - t87; /* link j7: columns */
+    const wam7_real_t t136 = t78 * t78; /* link j7: motion */
     const wam7_real_t t137 = t71 * t116 - t63 * t124;
-    const wam7_real_t t138 = t137 * parameters[MZ7];
+    const wam7_real_t t138 = t137 * parameters[MZ7]; /* link j7: force and moment */
     const wam7_real_t t139 = (t90 - t136) * parameters[XZ7] + (t134 + t135 * parameters[YZ7]) - (t138
         + t131 * parameters[MX7]);
     const wam7_real_t t140 = t137 * parameters[M7];
@@ -309,162 +312,204 @@ int wam7_inverse_dynamics_derivatives_standard(
     const wam7_real_t t143 = t125 * parameters[M7];
     const wam7_real_t t144 = t72 * parameters[MZ7];
     const wam7_real_t t145 = t143 + ((t136 + t90) * parameters[MY7] - t88 * parameters[MX7] + t144);
-    const wam7_real_t t146 = t71 * t142 + t63 * t145;
-    const wam7_real_t t147 = t84 + t85;
+    const wam7_real_t t146 = t71 * t142 + t63 * t145; /* link j7: what it passes on */
+    const wam7_real_t t147 = t84 + t85; /* link j7: motion */
+    /* link j6: force and moment */
     const wam7_real_t t148 = t61 * parameters[XX6] - t60 * (parameters[YY6] - parameters[ZZ6])
         - t147 * parameters[XY6];
-    const wam7_real_t t149 = t67 + t69;
-    const wam7_real_t t150 = t58 * t58;
+    const wam7_real_t t149 = t67 + t69; /* link j7: motion */
+    const wam7_real_t t150 = t58 * t58; /* link j6: motion */
+    /* link j6: force and moment */
     const wam7_real_t t151 = (t150 - t129) * parameters[YZ6] - (t148 - t149 * parameters[XZ6])
         + (t127 * parameters[MZ6] - t115 * parameters[MY6]);
+    /* link j7: what it passes on */
     const wam7_real_t t152 = t151 + (t63 * t132 - t71 * t139 + WAM7_C(0.06) * t146);
+    /* link j6: force and moment */
     const wam7_real_t t153 = t84 * (parameters[ZZ6] - parameters[XX6]) + t85 * parameters[YY6]
         - t62 * parameters[XY6];
     const wam7_real_t t154 = (t129 - t128) * parameters[XZ6] + (t153 + t70 * parameters[YZ6])
         + (t115 * parameters[MX6] - t123 * parameters[MZ6]);
-    const wam7_real_t t155 = parameters[XX7] - parameters[YY7];
+    const wam7_real_t t155 = parameters[XX7] - parameters[YY7]; /* link j7: inertia of it and all beyond */
+    /* link j7: force and moment */
     const wam7_real_t t156 = t87 * t155 - t86 * parameters[ZZ7] - t77 * parameters[YZ7]
         - t72 * parameters[XZ7];
     const wam7_real_t t157 = (t89 - t136) * parameters[XY7] + t156 + (t125 * parameters[MX7]
         - t137 * parameters[MY7]);
-    const wam7_real_t t158 = t154 + t157;
-    const wam7_real_t t159 = t66 - t65;
+    const wam7_real_t t158 = t154 + t157; /* link j7: what it passes on */
+    const wam7_real_t t159 = t66 - t65; /* link j6: motion */
+    /* link j5: force and moment */
     const wam7_real_t t160 = t53 * (parameters[ZZ5] - parameters[YY5]) + t54 * parameters[XX5]
         + t159 * parameters[XY5];
-    const wam7_real_t t161 = t37 - t32;
-    const wam7_real_t t162 = t36 * t36;
+    const wam7_real_t t161 = t37 - t32; /* link j6: motion */
+    const wam7_real_t t162 = t36 * t36; /* link j5: motion */
     const wam7_real_t t163 = t52 * t52;
+    /* link j5: force and moment */
     const wam7_real_t t164 = (t162 - t163) * parameters[YZ5] + (t160 + t161 * parameters[XZ5])
         + (t122 * parameters[MY5] + t115 * parameters[MZ5]);
-    const wam7_real_t t165 = t164 + (t56 * t152 - t39 * t158);
-    const wam7_real_t t166 = t63 * t142 - t71 * t145;
+    const wam7_real_t t165 = t164 + (t56 * t152 - t39 * t158); /* link j6: what it passes on */
+    const wam7_real_t t166 = t63 * t142 - t71 * t145; /* link j7: what it passes on */
+    /* link j6: force and moment */
     const wam7_real_t t167 = t67 * parameters[ZZ6] - t69 * (parameters[XX6] - parameters[YY6])
         + t83 * parameters[YZ6];
     const wam7_real_t t168 = (t128 - t150) * parameters[XY6] + (t167 + t57 * parameters[XZ6])
         + (t123 * parameters[MY6] - t127 * parameters[MX6]);
+    /* link j7: what it passes on */
     const wam7_real_t t169 = t168 + (t71 * t132 + t63 * t139 + WAM7_C(-0.06) * t166);
+    /* link j5: force and moment */
     const wam7_real_t t170 = t66 * parameters[YY5] - t65 * (parameters[ZZ5] - parameters[XX5])
         + t55 * parameters[XY5];
-    const wam7_real_t t171 = t35 * t35;
+    const wam7_real_t t171 = t35 * t35; /* link j5: motion */
+    /* link j5: force and moment */
     const wam7_real_t t172 = (t163 - t171) * parameters[XZ5] + (t170 - t38 * parameters[YZ5])
         + (t117 * parameters[MZ5] - t122 * parameters[MX5]);
-    const wam7_real_t t173 = t172 + t169;
+    const wam7_real_t t173 = t172 + t169; /* link j6: what it passes on */
+    /* link j6: force and moment */
     const wam7_real_t t174 = (t150 + t129) * parameters[MX6] + t70 * parameters[MY6] - t83 * parameters[MZ6];
-    const wam7_real_t t175 = t123 * parameters[M6] + t174 + t166;
+    const wam7_real_t t175 = t123 * parameters[M6] + t174 + t166; /* link j7: what it passes on */
+    /* link j6: force and moment */
     const wam7_real_t t176 = t127 * parameters[M6] + (t130 * parameters[MY6] - t149 * parameters[MX6]
         + t57 * parameters[MZ6]);
-    const wam7_real_t t177 = t136 + t89;
+    const wam7_real_t t177 = t136 + t89; /* link j7: columns */
+    /* link j7: force and moment */
     const wam7_real_t t178 = t131 * parameters[M7] + (t133 * parameters[MY7] - t81 * parameters[MX7]
         - t177 * parameters[MZ7]);
-    const wam7_real_t t179 = t176 + t178;
+    const wam7_real_t t179 = t176 + t178; /* link j7: what it passes on */
+    /* link j5: force and moment */
     const wam7_real_t t180 = (t162 + t163) * parameters[MX5] - t38 * parameters[MY5] - t64 * parameters[MZ5];
+    /* link j6: what it passes on */
     const wam7_real_t t181 = t180 - t117 * parameters[M5] + (t56 * t175 - t39 * t179);
-    const wam7_real_t t182 = t128 + t150;
+    const wam7_real_t t182 = t128 + t150; /* link j7: motion */
+    /* link j6: force and moment */
     const wam7_real_t t183 = t115 * parameters[M6] + (t182 * parameters[MZ6] + (t147 * parameters[MX6]
         + t62 * parameters[MY6]));
+    /* link j5: force and moment */
     const wam7_real_t t184 = (t171 + t163) * parameters[MY5] - t161 * parameters[MX5] - t51 * parameters[MZ5];
-    const wam7_real_t t185 = t115 * parameters[M5] + t184 + (t183 + t146);
-    const wam7_real_t t186 = t34 * t181 + t33 * t185;
+    const wam7_real_t t185 = t115 * parameters[M5] + t184 + (t183 + t146); /* link j6: what it passes on */
+    const wam7_real_t t186 = t34 * t181 + t33 * t185; /* link j5: what it passes on */
+    /* link j4: force and moment */
     const wam7_real_t t187 = t49 * parameters[XX4] - t48 * (parameters[YY4] - parameters[ZZ4])
         - t110 * parameters[XY4];
     const wam7_real_t t188 = (t91 - t92) * parameters[YZ4] - (t187 - t118 * parameters[XZ4])
         + (t121 * parameters[MZ4] - t113 * parameters[MY4]);
+    /* link j5: what it passes on */
     const wam7_real_t t189 = t188 + (t33 * t165 - t34 * t173 + WAM7_C(0.3) * t186);
+    /* link j5: force and moment */
     const wam7_real_t t190 = t32 * parameters[ZZ5] - t37 * (parameters[YY5] - parameters[XX5])
         - t64 * parameters[YZ5];
     const wam7_real_t t191 = (t162 - t171) * parameters[XY5] + (t190 + t51 * parameters[XZ5])
         + (t115 * parameters[MX5] + t117 * parameters[MY5]);
-    const wam7_real_t t192 = t191 + (t39 * t152 + t56 * t158);
+    const wam7_real_t t192 = t191 + (t39 * t152 + t56 * t158); /* link j6: what it passes on */
+    /* link j4: force and moment */
     const wam7_real_t t193 = t31 * parameters[YY4] - t30 * (parameters[ZZ4] - parameters[XX4])
         - t50 * parameters[XY4];
     const wam7_real_t t194 = (t92 - t119) * parameters[XZ4] + (t193 + t46 * parameters[YZ4])
         + (t108 * parameters[MZ4] + t113 * parameters[MX4]);
-    const wam7_real_t t195 = t194 + (t192 + WAM7_C(-0.045) * t186);
+    const wam7_real_t t195 = t194 + (t192 + WAM7_C(-0.045) * t186); /* link j5: what it passes on */
+    /* link j3: force and moment */
     const wam7_real_t t196 = t23 * (parameters[ZZ3] - parameters[YY3]) + t24 * parameters[XX3]
         + t102 * parameters[XY3];
     const wam7_real_t t197 = (t98 - t99) * parameters[YZ3] + (t196 - t112 * parameters[XZ3])
         + (t106 * parameters[MY3] + t111 * parameters[MZ3]);
-    const wam7_real_t t198 = t197 + (t13 * t189 - t26 * t195);
-    const wam7_real_t t199 = t34 * t185 - t33 * t181;
-    const wam7_real_t t200 = t171 + t162;
+    const wam7_real_t t198 = t197 + (t13 * t189 - t26 * t195); /* link j4: what it passes on */
+    const wam7_real_t t199 = t34 * t185 - t33 * t181; /* link j5: what it passes on */
+    const wam7_real_t t200 = t171 + t162; /* link j6: motion */
+    /* link j5: force and moment */
     const wam7_real_t t201 = t122 * parameters[M5] + (t55 * parameters[MY5] - t159 * parameters[MX5]
         - t200 * parameters[MZ5]);
-    const wam7_real_t t202 = t201 + (t39 * t175 + t56 * t179);
+    const wam7_real_t t202 = t201 + (t39 * t175 + t56 * t179); /* link j6: what it passes on */
+    /* link j5: what it passes on */
     const wam7_real_t t203 = t34 * t165 + t33 * t173 + (WAM7_C(0.045) * t202 + WAM7_C(0.3) * t199);
+    /* link j4: force and moment */
     const wam7_real_t t204 = t45 * (parameters[XX4] - parameters[YY4]) + t43 * parameters[ZZ4]
         + t27 * parameters[YZ4];
     const wam7_real_t t205 = (t119 - t91) * parameters[XY4] + (t204 + t47 * parameters[XZ4])
         - (t121 * parameters[MX4] + t108 * parameters[MY4]);
-    const wam7_real_t t206 = t205 + t203;
+    const wam7_real_t t206 = t205 + t203; /* link j5: what it passes on */
+    /* link j4: force and moment */
     const wam7_real_t t207 = t108 * parameters[M4] + (t27 * parameters[MZ4] - (t93 * parameters[MX4]
         + t46 * parameters[MY4]));
-    const wam7_real_t t208 = t207 + t199;
+    const wam7_real_t t208 = t207 + t199; /* link j5: what it passes on */
+    /* link j4: force and moment */
     const wam7_real_t t209 = t121 * parameters[M4] + (t120 * parameters[MY4] - t118 * parameters[MX4]
         + t47 * parameters[MZ4]);
-    const wam7_real_t t210 = t209 + t202;
+    const wam7_real_t t210 = t209 + t202; /* link j5: what it passes on */
+    /* link j3: force and moment */
     const wam7_real_t t211 = t42 * parameters[YY3] - t41 * (parameters[ZZ3] - parameters[XX3])
         + t25 * parameters[XY3];
-    const wam7_real_t t212 = t4 * t4;
+    const wam7_real_t t212 = t4 * t4; /* link j3: motion */
+    /* link j3: force and moment */
     const wam7_real_t t213 = (t99 - t212) * parameters[XZ3] + (t211 - t12 * parameters[YZ3])
         + (t97 * parameters[MZ3] - t106 * parameters[MX3]);
+    /* link j4: what it passes on */
     const wam7_real_t t214 = t213 + (t206 + WAM7_C(0.045) * (t26 * t208 - t13 * t210));
+    /* link j3: force and moment */
     const wam7_real_t t215 = t97 * parameters[M3] + (t12 * parameters[MY3] - t100 * parameters[MX3]
         + t40 * parameters[MZ3]);
-    const wam7_real_t t216 = t215 + (t13 * t208 + t26 * t210);
-    const wam7_real_t t217 = t119 + t91;
+    const wam7_real_t t216 = t215 + (t13 * t208 + t26 * t210); /* link j4: what it passes on */
+    const wam7_real_t t217 = t119 + t91; /* link j5: motion */
+    /* link j4: force and moment */
     const wam7_real_t t218 = t113 * parameters[M4] + (t217 * parameters[MZ4] + (t110 * parameters[MX4]
         + t50 * parameters[MY4]));
-    const wam7_real_t t219 = t218 + t186;
+    const wam7_real_t t219 = t218 + t186; /* link j5: what it passes on */
+    /* link j3: force and moment */
     const wam7_real_t t220 = (t212 + t99) * parameters[MY3] + t112 * parameters[MX3] - t21 * parameters[MZ3];
-    const wam7_real_t t221 = t111 * parameters[M3] + t220 + t219;
+    const wam7_real_t t221 = t111 * parameters[M3] + t220 + t219; /* link j4: what it passes on */
+    /* link j3: what it passes on */
     const wam7_real_t t222 = t3 * t214 - t2 * t198 + WAM7_C(0.55) * (t3 * t216 - t2 * t221);
+    /* link j2: force and moment */
     const wam7_real_t t223 = t18 * (parameters[ZZ2] - parameters[YY2]) + t19 * parameters[XX2] - (t9
         + t10) * parameters[XY2];
-    const wam7_real_t t224 = t14 * t14;
+    const wam7_real_t t224 = t14 * t14; /* link j2: motion */
+    /* link j2: force and moment */
     const wam7_real_t t225 = (t104 - t224) * parameters[YZ2] + (t223 - (ddq[1] + t15) * parameters[XZ2]);
-    const wam7_real_t t226 = t225 - t105 * parameters[MZ2] + t222;
+    const wam7_real_t t226 = t225 - t105 * parameters[MZ2] + t222; /* link j3: what it passes on */
+    /* link j3: force and moment */
     const wam7_real_t t227 = t11 * parameters[ZZ3] - t6 * (parameters[YY3] - parameters[XX3])
         - t40 * parameters[YZ3];
     const wam7_real_t t228 = (t98 - t212) * parameters[XY3] + (t227 + t21 * parameters[XZ3])
         + (t111 * parameters[MX3] + t97 * parameters[MY3]);
+    /* link j4: what it passes on */
     const wam7_real_t t229 = t228 + (t26 * t189 + t13 * t195 + WAM7_C(0.045) * t219);
+    /* link j2: force and moment */
     const wam7_real_t t230 = t9 * (parameters[ZZ2] - parameters[XX2]) + t10 * parameters[YY2]
         - t20 * parameters[XY2];
     const wam7_real_t t231 = t94 * parameters[MZ2] + ((t104 - t103) * parameters[XZ2] + (t230
         + t16 * parameters[YZ2]));
-    const wam7_real_t t232 = t231 + t229;
+    const wam7_real_t t232 = t231 + t229; /* link j3: what it passes on */
     const wam7_real_t t233 = WAM7_C(0.05209961446285298) * (ddq[0] * parameters[ZZ1] + (t0 * t226
         - t7 * t232));
-    const wam7_real_t t234 = wam7_sign(dq[0]);
+    const wam7_real_t t234 = wam7_sign(dq[0]); /* joint j1: coulomb_friction */
     const wam7_real_t t235 = WAM7_C(42.0) * dq[0] * parameters[FV1] + t234 * parameters[FC1]
         + WAM7_C(42.0) * ddq[0] * parameters[IA1];
     input[0] = WAM7_C(2.1881838074398248) * t235 + t233;
+    /* link j3: what it passes on */
     const wam7_real_t t236 = t3 * t198 + t2 * t214 + WAM7_C(0.55) * (t2 * t216 + t3 * t221);
+    /* link j2: force and moment */
     const wam7_real_t t237 = t15 * (parameters[YY2] - parameters[XX2]) + ddq[1] * parameters[ZZ2]
         - t8 * parameters[YZ2];
     const wam7_real_t t238 = (t103 - t224) * parameters[XY2] + (t237 - t17 * parameters[XZ2])
         - (t105 * parameters[MX2] + t94 * parameters[MY2]);
-    const wam7_real_t t239 = wam7_sign(dq[1]);
+    const wam7_real_t t239 = wam7_sign(dq[1]); /* joint j2: coulomb_friction */
     const wam7_real_t t240 = WAM7_C(28.25) * dq[1] * parameters[FV2] + t239 * parameters[FC2]
         + WAM7_C(28.25) * ddq[1] * parameters[IA2];
     input[1] = WAM7_C(2.1881838074398248) * t240 + WAM7_C(0.07745783389167521) * (t238 + t236);
-    const wam7_real_t t241 = wam7_sign(dq[2]);
+    const wam7_real_t t241 = wam7_sign(dq[2]); /* joint j3: coulomb_friction */
     const wam7_real_t t242 = WAM7_C(28.25) * dq[2] * parameters[FV3] + t241 * parameters[FC3]
         + WAM7_C(28.25) * ddq[2] * parameters[IA3];
     input[2] = WAM7_C(2.1881838074398248) * t242 + WAM7_C(-0.07745783389167521) * t229;
-    const wam7_real_t t243 = wam7_sign(dq[3]);
+    const wam7_real_t t243 = wam7_sign(dq[3]); /* joint j4: coulomb_friction */
     const wam7_real_t t244 = WAM7_C(18.0) * dq[3] * parameters[FV4] + t243 * parameters[FC4]
         + WAM7_C(18.0) * ddq[3] * parameters[IA4];
     input[3] = WAM7_C(2.1881838074398248) * t244 + WAM7_C(0.12156576707999026) * t206;
-    const wam7_real_t t245 = wam7_sign(dq[4]);
+    const wam7_real_t t245 = wam7_sign(dq[4]); /* joint j5: coulomb_friction */
     const wam7_real_t t246 = WAM7_C(9.48) * dq[4] * parameters[FV5] + t245 * parameters[FC5]
         + WAM7_C(9.48) * ddq[4] * parameters[IA5];
     input[4] = WAM7_C(4.237288135593221) * t246 + WAM7_C(-0.4469713223199599) * t192;
-    const wam7_real_t t247 = wam7_sign(dq[5]);
+    const wam7_real_t t247 = wam7_sign(dq[5]); /* joint j6: coulomb_friction */
     const wam7_real_t t248 = WAM7_C(9.48) * dq[5] * parameters[FV6] + t247 * parameters[FC6]
         + WAM7_C(9.48) * ddq[5] * parameters[IA6];
     input[5] = WAM7_C(4.237288135593221) * t248 + WAM7_C(0.4469713223199599) * t169;
-    const wam7_real_t t249 = wam7_sign(dq[6]);
+    const wam7_real_t t249 = wam7_sign(dq[6]); /* joint j7: coulomb_friction */
     const wam7_real_t t250 = WAM7_C(14.93) * dq[6] * parameters[FV7] + t249 * parameters[FC7]
         + WAM7_C(14.93) * ddq[6] * parameters[IA7];
     input[6] = WAM7_C(14.925373134328357) * t250 + WAM7_C(-0.9996900960702182) * t157;
@@ -478,16 +523,19 @@ int wam7_inverse_dynamics_derivatives_standard(
     const wam7_real_t t258 = t74 * t257 - t78 * parameters[XZ7];
     const wam7_real_t t259 = t256 - parameters[YY7];
     const wam7_real_t t260 = t73 * parameters[YZ7] + t74 * t259;
+    /* link j7: inertia, momentum beyond */
     const wam7_real_t t261 = t63 * (t255 - t253) + t71 * (t258 + t260);
     const wam7_real_t t262 = t63 * t261;
-    const wam7_real_t t263 = WAM7_C(0.06) * t59;
+    const wam7_real_t t263 = WAM7_C(0.06) * t59; /* link j7: velocity of its origin */
+    /* link j7: column of the mass matrix */
     const wam7_real_t t264 = t63 * parameters[MX7] - t71 * parameters[MY7];
-    const wam7_real_t t265 = t264 * t263;
+    const wam7_real_t t265 = t264 * t263; /* link j7: inertia, momentum beyond */
     const wam7_real_t t266 = t78 * parameters[MY7] - t73 * parameters[MX7];
     const wam7_real_t t267 = WAM7_C(-0.06) * t266;
-    const wam7_real_t t268 = WAM7_C(0.06) * t68;
+    const wam7_real_t t268 = WAM7_C(0.06) * t68; /* link j7: velocity of its origin */
+    /* link j7: column of the mass matrix */
     const wam7_real_t t269 = t63 * parameters[MY7] + t71 * parameters[MX7];
-    const wam7_real_t t270 = t269 * t268;
+    const wam7_real_t t270 = t269 * t268; /* link j7: inertia, momentum beyond */
     const wam7_real_t t271 = t265 + t270 - t267;
     const wam7_real_t t272 = t58 * parameters[XZ6];
     const wam7_real_t t273 = t59 * parameters[XY6];
@@ -501,8 +549,9 @@ int wam7_inverse_dynamics_derivatives_standard(
     const wam7_real_t t281 = t74 * parameters[MY7] - t73 * parameters[MZ7];
     const wam7_real_t t282 = t74 * parameters[MX7] - t78 * parameters[MZ7];
     const wam7_real_t t283 = t63 * t281 + t71 * t282;
-    const wam7_real_t t284 = WAM7_C(0.06) * parameters[M7];
+    const wam7_real_t t284 = WAM7_C(0.06) * parameters[M7]; /* link j7: inertia of it and all beyond */
     const wam7_real_t t285 = parameters[MZ7] + t284;
+    /* link j7: inertia, momentum beyond */
     const wam7_real_t t286 = t63 * t279 + t71 * t280 + (WAM7_C(-0.06) * t283 + t285 * t263);
     const wam7_real_t t287 = WAM7_C(0.5) * (parameters[ZZ6] + (parameters[XX6] + parameters[YY6]));
     const wam7_real_t t288 = parameters[YY6] - t287;
@@ -511,321 +560,367 @@ int wam7_inverse_dynamics_derivatives_standard(
     const wam7_real_t t291 = t73 * parameters[XY7] + t78 * t259;
     const wam7_real_t t292 = t287 - parameters[XX6];
     const wam7_real_t t293 = t59 * t292 - t68 * parameters[XZ6] + (t63 * t290 + t71 * t291);
+    /* link j6: inertia, momentum beyond */
     const wam7_real_t t294 = t56 * (t274 + t277) + t39 * (t289 - t293);
     const wam7_real_t t295 = t56 * t294;
     const wam7_real_t t296 = t36 * parameters[XZ5];
     const wam7_real_t t297 = t52 * parameters[XY5];
     const wam7_real_t t298 = t296 - t297 + (t277 - t295);
+    /* link j7: inertia, momentum beyond */
     const wam7_real_t t299 = t272 - t276 + (t271 + (t253 + t262 - t270));
     const wam7_real_t t300 = t35 * parameters[YZ5];
-    const wam7_real_t t301 = t297 - t300 + t299;
-    const wam7_real_t t302 = t71 * t261;
+    const wam7_real_t t301 = t297 - t300 + t299; /* link j6: inertia, momentum beyond */
+    const wam7_real_t t302 = t71 * t261; /* link j7: inertia, momentum beyond */
     const wam7_real_t t303 = t287 - parameters[ZZ6];
     const wam7_real_t t304 = t59 * parameters[YZ6] - t58 * t303 + (t302 - t260 + t269 * t263);
     const wam7_real_t t305 = t68 * t303 - t59 * parameters[XZ6] + (t71 * t290 - t63 * t291);
     const wam7_real_t t306 = WAM7_C(0.5) * (parameters[ZZ5] + (parameters[XX5] + parameters[YY5]));
     const wam7_real_t t307 = t306 - parameters[YY5];
+    /* link j6: inertia, momentum beyond */
     const wam7_real_t t308 = t36 * parameters[YZ5] + t52 * t307 - (t56 * t304 - t39 * t305);
+    /* link j7: inertia, momentum beyond */
     const wam7_real_t t309 = t258 - t302 - t264 * t268 - (t68 * parameters[XY6] + t58 * t292);
     const wam7_real_t t310 = t63 * t282 - t71 * t281;
     const wam7_real_t t311 = t63 * t280 - t71 * t279 + (WAM7_C(-0.06) * t310 - t285 * t268);
     const wam7_real_t t312 = t68 * t288 - t58 * parameters[XY6] + t311;
     const wam7_real_t t313 = parameters[XX5] - t306;
+    /* link j6: inertia, momentum beyond */
     const wam7_real_t t314 = t52 * t313 - t35 * parameters[XZ5] + (t56 * t309 + t39 * t312);
+    /* link j5: inertia, momentum beyond */
     const wam7_real_t t315 = t33 * (t301 - t298) + t34 * (t308 + t314);
     const wam7_real_t t316 = t33 * t315;
+    /* link j7: inertia, momentum beyond */
     const wam7_real_t t317 = t58 * parameters[MZ6] + t59 * parameters[MY6] + (t283 - parameters[M7] * t263);
     const wam7_real_t t318 = t59 * parameters[MX6] + t68 * parameters[MZ6] - t266;
+    /* link j6: inertia, momentum beyond */
     const wam7_real_t t319 = t52 * parameters[MY5] - t36 * parameters[MZ5] + (t56 * t317 + t39 * t318);
+    /* link j7: inertia, momentum beyond */
     const wam7_real_t t320 = t58 * parameters[MX6] - t68 * parameters[MY6] + (t310 + parameters[M7] * t268);
+    /* link j6: inertia, momentum beyond */
     const wam7_real_t t321 = t52 * parameters[MX5] - t35 * parameters[MZ5] + t320;
-    const wam7_real_t t322 = t33 * t319 + t34 * t321;
+    const wam7_real_t t322 = t33 * t319 + t34 * t321; /* link j5: inertia, momentum beyond */
     const wam7_real_t t323 = WAM7_C(0.045) * t322;
-    const wam7_real_t t324 = parameters[MZ6] + t269;
-    const wam7_real_t t325 = parameters[MY5] + t324;
-    const wam7_real_t t326 = parameters[MX6] + t264;
+    const wam7_real_t t324 = parameters[MZ6] + t269; /* link j7: inertia of it and all beyond */
+    const wam7_real_t t325 = parameters[MY5] + t324; /* link j6: inertia of it and all beyond */
+    const wam7_real_t t326 = parameters[MX6] + t264; /* link j7: inertia of it and all beyond */
     const wam7_real_t t327 = t285 - parameters[MY6];
-    const wam7_real_t t328 = t39 * t327 + t56 * t326;
-    const wam7_real_t t329 = parameters[MX5] + t328;
-    const wam7_real_t t330 = t33 * t329 - t34 * t325;
-    const wam7_real_t t331 = parameters[M6] + parameters[M7];
-    const wam7_real_t t332 = parameters[M5] + t331;
-    const wam7_real_t t333 = WAM7_C(0.045) * t332;
+    const wam7_real_t t328 = t39 * t327 + t56 * t326; /* link j6: column of the mass matrix */
+    const wam7_real_t t329 = parameters[MX5] + t328; /* link j6: inertia of it and all beyond */
+    const wam7_real_t t330 = t33 * t329 - t34 * t325; /* link j5: column of the mass matrix */
+    const wam7_real_t t331 = parameters[M6] + parameters[M7]; /* link j7: inertia of it and all beyond */
+    const wam7_real_t t332 = parameters[M5] + t331; /* link j6: inertia of it and all beyond */
+    const wam7_real_t t333 = WAM7_C(0.045) * t332; /* link j5: inertia of it and all beyond */
     const wam7_real_t t334 = t333 - t330;
-    const wam7_real_t t335 = WAM7_C(0.3) * t29;
-    const wam7_real_t t336 = t334 * t335;
+    const wam7_real_t t335 = WAM7_C(0.3) * t29; /* link j5: velocity of its origin */
+    const wam7_real_t t336 = t334 * t335; /* link j5: inertia, momentum beyond */
+    /* link j6: inertia, momentum beyond */
     const wam7_real_t t337 = t35 * parameters[MY5] - t36 * parameters[MX5] + (t39 * t317 - t56 * t318);
-    const wam7_real_t t338 = WAM7_C(-0.3) * t337;
-    const wam7_real_t t339 = t56 * t327 - t39 * t326;
-    const wam7_real_t t340 = parameters[MZ5] + t339;
-    const wam7_real_t t341 = WAM7_C(0.3) * t332;
+    const wam7_real_t t338 = WAM7_C(-0.3) * t337; /* link j5: inertia, momentum beyond */
+    const wam7_real_t t339 = t56 * t327 - t39 * t326; /* link j6: column of the mass matrix */
+    const wam7_real_t t340 = parameters[MZ5] + t339; /* link j6: inertia of it and all beyond */
+    const wam7_real_t t341 = WAM7_C(0.3) * t332; /* link j5: inertia of it and all beyond */
     const wam7_real_t t342 = t340 + t341;
-    const wam7_real_t t343 = WAM7_C(0.045) * t29;
-    const wam7_real_t t344 = t342 * t343;
-    const wam7_real_t t345 = t33 * t325 + t34 * t329;
-    const wam7_real_t t346 = WAM7_C(-0.3) * t28 + WAM7_C(-0.045) * t44;
-    const wam7_real_t t347 = t345 * t346;
+    const wam7_real_t t343 = WAM7_C(0.045) * t29; /* link j5: velocity of its origin */
+    const wam7_real_t t344 = t342 * t343; /* link j5: inertia, momentum beyond */
+    const wam7_real_t t345 = t33 * t325 + t34 * t329; /* link j5: column of the mass matrix */
+    const wam7_real_t t346 = WAM7_C(-0.3) * t28 + WAM7_C(-0.045) * t44; /* link j5: velocity of its origin */
+    const wam7_real_t t347 = t345 * t346; /* link j5: inertia, momentum beyond */
     const wam7_real_t t348 = t323 - t338 + (t344 - t336 + t347);
     const wam7_real_t t349 = t44 * parameters[XZ4];
     const wam7_real_t t350 = t29 * parameters[XY4];
     const wam7_real_t t351 = t349 + t350 + (t316 - t301 + (t323 - t336) - t348);
-    const wam7_real_t t352 = t300 - t296 + (t295 - t274);
+    const wam7_real_t t352 = t300 - t296 + (t295 - t274); /* link j6: inertia, momentum beyond */
     const wam7_real_t t353 = t28 * parameters[YZ4];
+    /* link j5: inertia, momentum beyond */
     const wam7_real_t t354 = t350 - t353 + (t348 + (t352 + (t338 - t344)));
-    const wam7_real_t t355 = t39 * t294;
+    const wam7_real_t t355 = t39 * t294; /* link j6: inertia, momentum beyond */
     const wam7_real_t t356 = parameters[ZZ5] - t306;
     const wam7_real_t t357 = t52 * parameters[YZ5] - t36 * t356 + (t289 - t355);
     const wam7_real_t t358 = t52 * parameters[XZ5] - t35 * t356 + (t56 * t312 - t39 * t309);
+    /* link j5: inertia, momentum beyond */
     const wam7_real_t t359 = t33 * t357 + t34 * t358 + (WAM7_C(-0.3) * t322 + t342 * t335);
     const wam7_real_t t360 = WAM7_C(0.5) * (parameters[ZZ4] + (parameters[XX4] + parameters[YY4]));
     const wam7_real_t t361 = parameters[YY4] - t360;
     const wam7_real_t t362 = t359 - (t44 * parameters[YZ4] + t29 * t361);
+    /* link j6: inertia, momentum beyond */
     const wam7_real_t t363 = t35 * parameters[XY5] - t36 * t313 + (t293 + t355);
     const wam7_real_t t364 = t39 * t304 + t56 * t305 - (t36 * parameters[XY5] + t35 * t307);
+    /* link j5: inertia, momentum beyond */
     const wam7_real_t t365 = t33 * t363 - t34 * t364 + (WAM7_C(0.045) * t337 + t334 * t343);
     const wam7_real_t t366 = t360 - parameters[XX4];
     const wam7_real_t t367 = t28 * parameters[XZ4] + t29 * t366 + t365;
+    /* link j4: inertia, momentum beyond */
     const wam7_real_t t368 = t13 * (t351 + t354) + t26 * (t362 - t367);
     const wam7_real_t t369 = t13 * t368;
+    /* link j5: inertia, momentum beyond */
     const wam7_real_t t370 = t44 * parameters[MZ4] + t29 * parameters[MY4] + (t322 - t332 * t335);
     const wam7_real_t t371 = t28 * parameters[MZ4] - t29 * parameters[MX4] + (t337 + t332 * t343);
-    const wam7_real_t t372 = t26 * t371 - t13 * t370;
+    const wam7_real_t t372 = t26 * t371 - t13 * t370; /* link j4: inertia, momentum beyond */
     const wam7_real_t t373 = WAM7_C(0.045) * t372;
-    const wam7_real_t t374 = parameters[MZ4] + t345;
-    const wam7_real_t t375 = WAM7_C(0.045) * t22;
-    const wam7_real_t t376 = t374 * t375;
-    const wam7_real_t t377 = parameters[MX4] - t334;
+    const wam7_real_t t374 = parameters[MZ4] + t345; /* link j5: inertia of it and all beyond */
+    const wam7_real_t t375 = WAM7_C(0.045) * t22; /* link j4: velocity of its origin */
+    const wam7_real_t t376 = t374 * t375; /* link j4: inertia, momentum beyond */
+    const wam7_real_t t377 = parameters[MX4] - t334; /* link j5: inertia of it and all beyond */
     const wam7_real_t t378 = parameters[MY4] - t342;
-    const wam7_real_t t379 = t13 * t378 + t26 * t377;
-    const wam7_real_t t380 = WAM7_C(-0.045) * t5;
-    const wam7_real_t t381 = t379 * t380;
+    const wam7_real_t t379 = t13 * t378 + t26 * t377; /* link j4: column of the mass matrix */
+    const wam7_real_t t380 = WAM7_C(-0.045) * t5; /* link j4: velocity of its origin */
+    const wam7_real_t t381 = t379 * t380; /* link j4: inertia, momentum beyond */
     const wam7_real_t t382 = t373 + (t376 - t381);
     const wam7_real_t t383 = t5 * parameters[XZ3];
     const wam7_real_t t384 = t22 * parameters[XY3];
     const wam7_real_t t385 = t383 - t384 + (t382 + (t354 - t369 - t373));
+    /* link j5: inertia, momentum beyond */
     const wam7_real_t t386 = t349 + t353 + (t348 + (t298 + t316 - t347));
     const wam7_real_t t387 = t4 * parameters[YZ3];
-    const wam7_real_t t388 = t384 - t387 + (t382 + (t386 - t376));
-    const wam7_real_t t389 = t34 * t315;
+    const wam7_real_t t388 = t384 - t387 + (t382 + (t386 - t376)); /* link j4: inertia, momentum beyond */
+    const wam7_real_t t389 = t34 * t315; /* link j5: inertia, momentum beyond */
     const wam7_real_t t390 = t360 - parameters[ZZ4];
     const wam7_real_t t391 = t29 * parameters[YZ4] - t44 * t390 + (t389 - t308 + t345 * t335);
     const wam7_real_t t392 = t34 * t363 + t33 * t364 - t345 * t343 - (t29 * parameters[XZ4] + t28 * t390);
     const wam7_real_t t393 = WAM7_C(0.5) * (parameters[ZZ3] + (parameters[XX3] + parameters[YY3]));
     const wam7_real_t t394 = t393 - parameters[YY3];
+    /* link j4: inertia, momentum beyond */
     const wam7_real_t t395 = t5 * parameters[YZ3] + t22 * t394 - (t13 * t391 - t26 * t392);
-    const wam7_real_t t396 = t34 * t319 - t33 * t321;
+    const wam7_real_t t396 = t34 * t319 - t33 * t321; /* link j5: inertia, momentum beyond */
     const wam7_real_t t397 = t28 * parameters[XY4] - t44 * t366 + (t314 - t389 + (WAM7_C(-0.045) * t396
         + t334 * t346));
     const wam7_real_t t398 = t33 * t358 - t34 * t357 + (WAM7_C(0.3) * t396 - t342 * t346);
     const wam7_real_t t399 = t398 - (t44 * parameters[XY4] + t28 * t361);
     const wam7_real_t t400 = t396 - t332 * t346 - (t28 * parameters[MY4] + t44 * parameters[MX4]);
-    const wam7_real_t t401 = t13 * t377 - t26 * t378;
-    const wam7_real_t t402 = parameters[M4] + t332;
-    const wam7_real_t t403 = WAM7_C(0.045) * t402;
+    const wam7_real_t t401 = t13 * t377 - t26 * t378; /* link j4: column of the mass matrix */
+    const wam7_real_t t402 = parameters[M4] + t332; /* link j5: inertia of it and all beyond */
+    const wam7_real_t t403 = WAM7_C(0.045) * t402; /* link j4: inertia of it and all beyond */
     const wam7_real_t t404 = t401 + t403;
+    /* link j4: inertia, momentum beyond */
     const wam7_real_t t405 = t13 * t397 + t26 * t399 + (WAM7_C(0.045) * t400 - t404 * t375);
     const wam7_real_t t406 = parameters[XX3] - t393;
     const wam7_real_t t407 = t22 * t406 - t4 * parameters[XZ3] + t405;
-    const wam7_real_t t408 = t2 * (t388 - t385) + t3 * (t395 + t407);
+    const wam7_real_t t408 = t2 * (t388 - t385) + t3 * (t395 + t407); /* link j3: inertia, momentum beyond */
     const wam7_real_t t409 = t2 * t408;
-    const wam7_real_t t410 = parameters[MY3] + t374;
+    const wam7_real_t t410 = parameters[MY3] + t374; /* link j4: inertia of it and all beyond */
     const wam7_real_t t411 = parameters[MX3] + t404;
-    const wam7_real_t t412 = t2 * t411 - t3 * t410;
-    const wam7_real_t t413 = WAM7_C(0.55) * dq[1];
-    const wam7_real_t t414 = t412 * t413;
-    const wam7_real_t t415 = t26 * t370 + t13 * t371;
+    const wam7_real_t t412 = t2 * t411 - t3 * t410; /* link j3: column of the mass matrix */
+    const wam7_real_t t413 = WAM7_C(0.55) * dq[1]; /* link j3: velocity of its origin */
+    const wam7_real_t t414 = t412 * t413; /* link j3: inertia, momentum beyond */
+    const wam7_real_t t415 = t26 * t370 + t13 * t371; /* link j4: inertia, momentum beyond */
     const wam7_real_t t416 = t4 * parameters[MY3] - t5 * parameters[MX3] + (t415 + t402 * t380);
-    const wam7_real_t t417 = WAM7_C(-0.55) * t416;
-    const wam7_real_t t418 = t2 * t410 + t3 * t411;
-    const wam7_real_t t419 = WAM7_C(-0.55) * t1;
-    const wam7_real_t t420 = t418 * t419;
+    const wam7_real_t t417 = WAM7_C(-0.55) * t416; /* link j3: inertia, momentum beyond */
+    const wam7_real_t t418 = t2 * t410 + t3 * t411; /* link j3: column of the mass matrix */
+    const wam7_real_t t419 = WAM7_C(-0.55) * t1; /* link j3: velocity of its origin */
+    const wam7_real_t t420 = t418 * t419; /* link j3: inertia, momentum beyond */
     const wam7_real_t t421 = t414 - t420 - t417;
     const wam7_real_t t422 = t14 * parameters[XZ2];
     const wam7_real_t t423 = dq[1] * parameters[XY2];
     const wam7_real_t t424 = t421 + (t388 - t409 - t414) - (t422 + t423);
+    /* link j4: inertia, momentum beyond */
     const wam7_real_t t425 = t387 - t383 + (t382 + (t369 - t351 + t381));
     const wam7_real_t t426 = t1 * parameters[YZ2];
-    const wam7_real_t t427 = t423 + t426 + (t421 + (t425 + t417));
-    const wam7_real_t t428 = t26 * t368;
+    const wam7_real_t t427 = t423 + t426 + (t421 + (t425 + t417)); /* link j3: inertia, momentum beyond */
+    const wam7_real_t t428 = t26 * t368; /* link j4: inertia, momentum beyond */
     const wam7_real_t t429 = parameters[ZZ3] - t393;
     const wam7_real_t t430 = t22 * parameters[YZ3] - t5 * t429 + (t362 - t428);
     const wam7_real_t t431 = t22 * parameters[XZ3] - t4 * t429 + (t13 * t399 - t26 * t397 + t379 * t375);
     const wam7_real_t t432 = t5 * parameters[MZ3] - t22 * parameters[MY3] + t372;
     const wam7_real_t t433 = t4 * parameters[MZ3] - t22 * parameters[MX3] + (t400 - t402 * t375);
-    const wam7_real_t t434 = parameters[MZ3] - t379;
+    const wam7_real_t t434 = parameters[MZ3] - t379; /* link j4: inertia of it and all beyond */
     const wam7_real_t t435 = parameters[M3] + t402;
-    const wam7_real_t t436 = WAM7_C(0.55) * t435;
+    const wam7_real_t t436 = WAM7_C(0.55) * t435; /* link j3: inertia of it and all beyond */
     const wam7_real_t t437 = t434 + t436;
+    /* link j3: inertia, momentum beyond */
     const wam7_real_t t438 = WAM7_C(0.55) * (t2 * t432 + t3 * t433) + t437 * t413;
     const wam7_real_t t439 = WAM7_C(0.5) * (parameters[ZZ2] + (parameters[XX2] + parameters[YY2]));
     const wam7_real_t t440 = t439 - parameters[YY2];
     const wam7_real_t t441 = dq[1] * t440 - t14 * parameters[YZ2] + (t2 * t430 + t3 * t431 + t438);
+    /* link j4: inertia, momentum beyond */
     const wam7_real_t t442 = t4 * parameters[XY3] - t5 * t406 + (t367 + t428 + (WAM7_C(-0.045) * t415
         - t404 * t380));
     const wam7_real_t t443 = t26 * t391 + t13 * t392 - t374 * t380 - (t5 * parameters[XY3] + t4 * t394);
     const wam7_real_t t444 = parameters[XX2] - t439;
+    /* link j3: inertia, momentum beyond */
     const wam7_real_t t445 = t1 * parameters[XZ2] + dq[1] * t444 + (t3 * t443 - t2 * t442);
+    /* link j2: inertia, momentum beyond */
     const wam7_real_t t446 = t7 * (t7 * (t427 - t424) + t0 * (t441 + t445));
     input_by_dq[0] = WAM7_C(91.90371991247264) * parameters[FV1] + WAM7_C(0.10419922892570596) * (t424
         + t446);
-    const wam7_real_t t447 = t3 * t408;
+    const wam7_real_t t447 = t3 * t408; /* link j3: inertia, momentum beyond */
     const wam7_real_t t448 = t1 * parameters[XY2] - t14 * t444 + (t447 - t407 - t412 * t419);
-    const wam7_real_t t449 = WAM7_C(2.0) * t448;
+    const wam7_real_t t449 = WAM7_C(2.0) * t448; /* link j2: derivatives */
+    /* link j3: inertia, momentum beyond */
     const wam7_real_t t450 = WAM7_C(0.55) * (t3 * t432 - t2 * t433) - t437 * t419;
     const wam7_real_t t451 = t14 * parameters[XY2] + t1 * t440 + (t3 * t430 - t2 * t431 + t450);
-    const wam7_real_t t452 = WAM7_C(2.0) * t451;
+    const wam7_real_t t452 = WAM7_C(2.0) * t451; /* link j2: derivatives */
     input_by_dq[7] = WAM7_C(0.07745783389167521) * (t0 * t449 - t7 * t452);
-    const wam7_real_t t453 = WAM7_C(2.0) * t442;
+    const wam7_real_t t453 = WAM7_C(2.0) * t442; /* link j3: derivatives */
     const wam7_real_t t454 = WAM7_C(2.0) * t443;
     const wam7_real_t t455 = t3 * t454 - t2 * t453;
     const wam7_real_t t456 = WAM7_C(2.0) * t425;
-    const wam7_real_t t457 = WAM7_C(-1.1) * t1;
+    const wam7_real_t t457 = WAM7_C(-1.1) * t1; /* link j7: derivatives */
     const wam7_real_t t458 = WAM7_C(-1.1) * dq[1];
-    const wam7_real_t t459 = t418 * t457 + t412 * t458 - t456;
+    const wam7_real_t t459 = t418 * t457 + t412 * t458 - t456; /* link j3: derivatives */
     input_by_dq[14] = WAM7_C(0.07745783389167521) * (t0 * t455 - t7 * t459);
-    const wam7_real_t t460 = WAM7_C(2.0) * t397;
+    const wam7_real_t t460 = WAM7_C(2.0) * t397; /* link j4: derivatives */
     const wam7_real_t t461 = WAM7_C(2.0) * t399;
-    const wam7_real_t t462 = WAM7_C(0.09) * t22;
-    const wam7_real_t t463 = t13 * t460 + t26 * t461 - t401 * t462;
+    const wam7_real_t t462 = WAM7_C(0.09) * t22; /* link j7: derivatives */
+    const wam7_real_t t463 = t13 * t460 + t26 * t461 - t401 * t462; /* link j4: derivatives */
     const wam7_real_t t464 = WAM7_C(2.0) * t386;
-    const wam7_real_t t465 = WAM7_C(0.09) * t5;
-    const wam7_real_t t466 = t464 + t379 * t465;
+    const wam7_real_t t465 = WAM7_C(0.09) * t5; /* link j7: derivatives */
+    const wam7_real_t t466 = t464 + t379 * t465; /* link j4: derivatives */
     const wam7_real_t t467 = t3 * t466 - t2 * t463 - t401 * t457;
     const wam7_real_t t468 = t13 * t461 - t26 * t460 + t379 * t462;
-    const wam7_real_t t469 = t2 * t379;
+    const wam7_real_t t469 = t2 * t379; /* link j4: column of the mass matrix */
     const wam7_real_t t470 = t3 * t379;
-    const wam7_real_t t471 = t468 + (t470 * t458 - t469 * t457);
+    const wam7_real_t t471 = t468 + (t470 * t458 - t469 * t457); /* link j4: derivatives */
     input_by_dq[21] = WAM7_C(0.12156576707999026) * (t0 * t467 + t7 * t471);
-    const wam7_real_t t472 = WAM7_C(2.0) * t363;
+    const wam7_real_t t472 = WAM7_C(2.0) * t363; /* link j5: derivatives */
     const wam7_real_t t473 = WAM7_C(2.0) * t364;
-    const wam7_real_t t474 = WAM7_C(0.09) * t29;
-    const wam7_real_t t475 = t33 * t472 - t34 * t473 - t330 * t474;
+    const wam7_real_t t474 = WAM7_C(0.09) * t29; /* link j7: derivatives */
+    const wam7_real_t t475 = t33 * t472 - t34 * t473 - t330 * t474; /* link j5: derivatives */
     const wam7_real_t t476 = WAM7_C(2.0) * t352;
-    const wam7_real_t t477 = WAM7_C(2.0) * t346;
+    const wam7_real_t t477 = WAM7_C(2.0) * t346; /* link j7: derivatives */
     const wam7_real_t t478 = WAM7_C(-0.6) * t29;
-    const wam7_real_t t479 = t476 + (t345 * t477 - t330 * t478);
-    const wam7_real_t t480 = t26 * t345;
-    const wam7_real_t t481 = t13 * t475 + t26 * t479 + (t480 * t462 + t330 * t465);
+    const wam7_real_t t479 = t476 + (t345 * t477 - t330 * t478); /* link j5: derivatives */
+    const wam7_real_t t480 = t26 * t345; /* link j5: column of the mass matrix */
+    const wam7_real_t t481 = t13 * t475 + t26 * t479 + (t480 * t462 + t330 * t465); /* link j5: derivatives */
     const wam7_real_t t482 = t34 * t472 + t33 * t473 - t345 * t474;
-    const wam7_real_t t483 = t13 * t345;
-    const wam7_real_t t484 = t482 + t483 * t465;
+    const wam7_real_t t483 = t13 * t345; /* link j5: column of the mass matrix */
+    const wam7_real_t t484 = t482 + t483 * t465; /* link j5: derivatives */
     const wam7_real_t t485 = t3 * t484 - t2 * t481 + t480 * t457;
     const wam7_real_t t486 = t13 * t479 - t26 * t475 + t483 * t462;
-    const wam7_real_t t487 = t2 * t483 + t3 * t330;
+    const wam7_real_t t487 = t2 * t483 + t3 * t330; /* link j5: column of the mass matrix */
     const wam7_real_t t488 = t2 * t330 - t3 * t483;
-    const wam7_real_t t489 = t486 - (t487 * t457 + t488 * t458);
+    const wam7_real_t t489 = t486 - (t487 * t457 + t488 * t458); /* link j5: derivatives */
     input_by_dq[28] = WAM7_C(0.4469713223199599) * (t0 * t485 + t7 * t489);
-    const wam7_real_t t490 = WAM7_C(2.0) * t309;
+    const wam7_real_t t490 = WAM7_C(2.0) * t309; /* link j6: derivatives */
     const wam7_real_t t491 = WAM7_C(2.0) * t312;
     const wam7_real_t t492 = t56 * t490 + t39 * t491;
     const wam7_real_t t493 = WAM7_C(2.0) * t299;
-    const wam7_real_t t494 = t34 * t339;
-    const wam7_real_t t495 = t33 * t492 - t34 * t493 - (t494 * t474 + t328 * t477);
+    const wam7_real_t t494 = t34 * t339; /* link j6: column of the mass matrix */
+    const wam7_real_t t495 = t33 * t492 - t34 * t493 - (t494 * t474 + t328 * t477); /* link j6: derivatives */
     const wam7_real_t t496 = t56 * t491 - t39 * t490;
-    const wam7_real_t t497 = t33 * t339;
-    const wam7_real_t t498 = t496 - (t497 * t477 + t494 * t478);
-    const wam7_real_t t499 = t26 * t497 + t13 * t328;
-    const wam7_real_t t500 = t13 * t495 + t26 * t498 + (t494 * t465 - t499 * t462);
+    const wam7_real_t t497 = t33 * t339; /* link j6: column of the mass matrix */
+    const wam7_real_t t498 = t496 - (t497 * t477 + t494 * t478); /* link j6: derivatives */
+    const wam7_real_t t499 = t26 * t497 + t13 * t328; /* link j6: column of the mass matrix */
+    const wam7_real_t t500 = t13 * t495 + t26 * t498 + (t494 * t465 - t499 * t462); /* link j6: derivatives */
     const wam7_real_t t501 = t34 * t492 + t33 * t493 + (t497 * t474 - t328 * t478);
-    const wam7_real_t t502 = t26 * t328 - t13 * t497;
-    const wam7_real_t t503 = t501 + t502 * t465;
+    const wam7_real_t t502 = t26 * t328 - t13 * t497; /* link j6: column of the mass matrix */
+    const wam7_real_t t503 = t501 + t502 * t465; /* link j6: derivatives */
     const wam7_real_t t504 = t3 * t503 - t2 * t500 - t499 * t457;
     const wam7_real_t t505 = t13 * t498 - t26 * t495 + t502 * t462;
-    const wam7_real_t t506 = t2 * t502 + t3 * t494;
+    const wam7_real_t t506 = t2 * t502 + t3 * t494; /* link j6: column of the mass matrix */
     const wam7_real_t t507 = t2 * t494 - t3 * t502;
-    const wam7_real_t t508 = t505 - (t506 * t457 + t507 * t458);
+    const wam7_real_t t508 = t505 - (t506 * t457 + t507 * t458); /* link j6: derivatives */
     input_by_dq[35] = WAM7_C(0.4469713223199599) * (t0 * t504 + t7 * t508);
-    const wam7_real_t t509 = WAM7_C(2.0) * t290;
+    const wam7_real_t t509 = WAM7_C(2.0) * t290; /* link j7: derivatives */
     const wam7_real_t t510 = WAM7_C(-2.0) * t291;
     const wam7_real_t t511 = t63 * t509 - t71 * t510;
     const wam7_real_t t512 = WAM7_C(2.0) * t275;
     const wam7_real_t t513 = t512 + (t269 * (WAM7_C(0.12) * t68) - t264 * (WAM7_C(-0.12) * t59));
     const wam7_real_t t514 = t56 * t511 + t39 * t513;
     const wam7_real_t t515 = t71 * t509 + t63 * t510;
-    const wam7_real_t t516 = t56 * t269;
+    const wam7_real_t t516 = t56 * t269; /* link j7: column of the mass matrix */
     const wam7_real_t t517 = t33 * t264 - t34 * t516;
     const wam7_real_t t518 = t39 * t269;
-    const wam7_real_t t519 = t33 * t514 - t34 * t515 + (t518 * t477 - t517 * t474);
+    const wam7_real_t t519 = t33 * t514 - t34 * t515 + (t518 * t477 - t517 * t474); /* link j7: derivatives */
     const wam7_real_t t520 = t56 * t513 - t39 * t511;
-    const wam7_real_t t521 = t33 * t516 + t34 * t264;
-    const wam7_real_t t522 = t520 + (t521 * t477 - t517 * t478);
-    const wam7_real_t t523 = t26 * t521 + t13 * t518;
-    const wam7_real_t t524 = t13 * t519 + t26 * t522 + (t523 * t462 + t517 * t465);
+    const wam7_real_t t521 = t33 * t516 + t34 * t264; /* link j7: column of the mass matrix */
+    const wam7_real_t t522 = t520 + (t521 * t477 - t517 * t478); /* link j7: derivatives */
+    const wam7_real_t t523 = t26 * t521 + t13 * t518; /* link j7: column of the mass matrix */
+    const wam7_real_t t524 = t13 * t519 + t26 * t522 + (t523 * t462 + t517 * t465); /* link j7: derivatives */
     const wam7_real_t t525 = t34 * t514 + t33 * t515 + (t518 * t478 - t521 * t474);
-    const wam7_real_t t526 = t13 * t521 - t26 * t518;
-    const wam7_real_t t527 = t525 + t526 * t465;
+    const wam7_real_t t526 = t13 * t521 - t26 * t518; /* link j7: column of the mass matrix */
+    const wam7_real_t t527 = t525 + t526 * t465; /* link j7: derivatives */
     const wam7_real_t t528 = t3 * t527 - t2 * t524 + t523 * t457;
     const wam7_real_t t529 = t13 * t522 - t26 * t519 + t526 * t462;
-    const wam7_real_t t530 = t2 * t526 + t3 * t517;
+    const wam7_real_t t530 = t2 * t526 + t3 * t517; /* link j7: column of the mass matrix */
     const wam7_real_t t531 = t2 * t517 - t3 * t526;
-    const wam7_real_t t532 = t529 - (t530 * t457 + t531 * t458);
+    const wam7_real_t t532 = t529 - (t530 * t457 + t531 * t458); /* link j7: derivatives */
     input_by_dq[42] = WAM7_C(0.9996900960702182) * (t0 * t528 + t7 * t532);
+    /* link j7: inertia of it and all beyond */
     const wam7_real_t t533 = t63 * t155 + parameters[XY7] * (WAM7_C(-2.0) * t71);
     const wam7_real_t t534 = t63 * t533;
     const wam7_real_t t535 = WAM7_C(0.06) * (WAM7_C(-2.0) * parameters[MZ7] - t284);
     const wam7_real_t t536 = t535 - (parameters[YY7] + t534) - parameters[XX6];
     const wam7_real_t t537 = parameters[YY6] + parameters[ZZ7];
+    /* link j7: column of the mass matrix */
     const wam7_real_t t538 = t63 * parameters[XZ7] - t71 * parameters[YZ7] + WAM7_C(-0.06) * t264;
-    const wam7_real_t t539 = t538 - parameters[XY6];
+    const wam7_real_t t539 = t538 - parameters[XY6]; /* link j7: inertia of it and all beyond */
+    /* link j6: inertia of it and all beyond */
     const wam7_real_t t540 = t539 * (WAM7_C(2.0) * t39) - t56 * (t536 + t537);
     const wam7_real_t t541 = t56 * t540;
     const wam7_real_t t542 = parameters[XX5] + (t537 + t541);
+    /* link j7: inertia of it and all beyond */
     const wam7_real_t t543 = t534 - parameters[XX7] + t535 - parameters[ZZ6];
-    const wam7_real_t t544 = t543 - parameters[YY5];
+    const wam7_real_t t544 = t543 - parameters[YY5]; /* link j6: inertia of it and all beyond */
+    /* link j7: column of the mass matrix */
     const wam7_real_t t545 = WAM7_C(0.06) * t269 - (t71 * parameters[XZ7] + t63 * parameters[YZ7]);
-    const wam7_real_t t546 = parameters[YZ6] + t545;
+    const wam7_real_t t546 = parameters[YZ6] + t545; /* link j7: inertia of it and all beyond */
     const wam7_real_t t547 = parameters[XZ6] + (parameters[XY7] + t71 * t533);
-    const wam7_real_t t548 = t56 * t547 - t39 * t546;
-    const wam7_real_t t549 = parameters[XY5] + t548;
+    const wam7_real_t t548 = t56 * t547 - t39 * t546; /* link j6: column of the mass matrix */
+    const wam7_real_t t549 = parameters[XY5] + t548; /* link j6: inertia of it and all beyond */
+    /* link j5: inertia of it and all beyond */
     const wam7_real_t t550 = t33 * (t542 + t544) - t549 * (WAM7_C(2.0) * t34);
     const wam7_real_t t551 = t33 * t550;
     const wam7_real_t t552 = WAM7_C(0.3) * (t341 + WAM7_C(2.0) * t340);
     const wam7_real_t t553 = t544 - t551 - t552 - parameters[XX4];
-    const wam7_real_t t554 = t536 + t541 - parameters[ZZ5];
+    const wam7_real_t t554 = t536 + t541 - parameters[ZZ5]; /* link j6: inertia of it and all beyond */
+    /* link j5: inertia of it and all beyond */
     const wam7_real_t t555 = WAM7_C(0.045) * (t333 + WAM7_C(-2.0) * t330);
     const wam7_real_t t556 = t554 - t555 - parameters[YY4];
+    /* link j6: inertia of it and all beyond */
     const wam7_real_t t557 = parameters[XZ5] + (t539 - t39 * t540);
-    const wam7_real_t t558 = t39 * t547 + t56 * t546;
-    const wam7_real_t t559 = parameters[YZ5] - t558;
-    const wam7_real_t t560 = t33 * t557 - t34 * t559;
+    const wam7_real_t t558 = t39 * t547 + t56 * t546; /* link j6: column of the mass matrix */
+    const wam7_real_t t559 = parameters[YZ5] - t558; /* link j6: inertia of it and all beyond */
+    const wam7_real_t t560 = t33 * t557 - t34 * t559; /* link j5: column of the mass matrix */
+    /* link j5: inertia of it and all beyond */
     const wam7_real_t t561 = t560 + (WAM7_C(0.045) * t340 + WAM7_C(0.3) * t334) - parameters[XY4];
+    /* link j4: inertia of it and all beyond */
     const wam7_real_t t562 = t13 * (t556 - t553) + t561 * (WAM7_C(2.0) * t26);
     const wam7_real_t t563 = t13 * t562;
     const wam7_real_t t564 = parameters[XX3] + (t563 - t556);
+    /* link j5: inertia of it and all beyond */
     const wam7_real_t t565 = parameters[ZZ4] + (t542 - t551 + (t555 + t552));
+    /* link j4: inertia of it and all beyond */
     const wam7_real_t t566 = WAM7_C(0.045) * (t403 - WAM7_C(-2.0) * t401);
     const wam7_real_t t567 = parameters[YY3] + (t565 + t566);
+    /* link j5: inertia of it and all beyond */
     const wam7_real_t t568 = parameters[XZ4] + (t549 + t34 * t550 + WAM7_C(0.045) * t345);
+    /* link j5: column of the mass matrix */
     const wam7_real_t t569 = t34 * t557 + t33 * t559 + WAM7_C(-0.3) * t345;
-    const wam7_real_t t570 = parameters[YZ4] - t569;
-    const wam7_real_t t571 = t13 * t568 - t26 * t570;
+    const wam7_real_t t570 = parameters[YZ4] - t569; /* link j5: inertia of it and all beyond */
+    const wam7_real_t t571 = t13 * t568 - t26 * t570; /* link j4: column of the mass matrix */
+    /* link j4: inertia of it and all beyond */
     const wam7_real_t t572 = parameters[XY3] + (t571 - WAM7_C(0.045) * t374);
+    /* link j3: inertia of it and all beyond */
     const wam7_real_t t573 = t2 * (t564 - t567) - t572 * (WAM7_C(2.0) * t3);
     const wam7_real_t t574 = t2 * t573;
     const wam7_real_t t575 = WAM7_C(0.55) * (t436 + WAM7_C(2.0) * t434);
     const wam7_real_t t576 = parameters[XX2] + (t567 + t574 + t575);
-    const wam7_real_t t577 = t553 + t563 - t566 - parameters[ZZ3];
-    const wam7_real_t t578 = parameters[YY2] - t577;
+    const wam7_real_t t577 = t553 + t563 - t566 - parameters[ZZ3]; /* link j4: inertia of it and all beyond */
+    const wam7_real_t t578 = parameters[YY2] - t577; /* link j3: inertia of it and all beyond */
+    /* link j4: inertia of it and all beyond */
     const wam7_real_t t579 = parameters[XZ3] + (t561 - t26 * t562 + WAM7_C(0.045) * t379);
-    const wam7_real_t t580 = t26 * t568 + t13 * t570;
-    const wam7_real_t t581 = parameters[YZ3] - t580;
+    const wam7_real_t t580 = t26 * t568 + t13 * t570; /* link j4: column of the mass matrix */
+    const wam7_real_t t581 = parameters[YZ3] - t580; /* link j4: inertia of it and all beyond */
+    /* link j3: column of the mass matrix */
     const wam7_real_t t582 = t3 * t581 - t2 * t579 + WAM7_C(0.55) * t412;
-    const wam7_real_t t583 = parameters[XY2] + t582;
+    const wam7_real_t t583 = parameters[XY2] + t582; /* link j3: inertia of it and all beyond */
+    /* link j2: inertia of it and all beyond */
     const wam7_real_t t584 = t7 * (t7 * (t578 - t576) + t583 * (WAM7_C(2.0) * t0));
     input_by_ddq[0] = WAM7_C(91.90371991247264) * parameters[IA1]
         + WAM7_C(0.05209961446285298) * (parameters[ZZ1] + (t576 + t584));
-    const wam7_real_t t585 = parameters[XZ2] + (t572 + t3 * t573);
+    const wam7_real_t t585 = parameters[XZ2] + (t572 + t3 * t573); /* link j3: inertia of it and all beyond */
+    /* link j3: column of the mass matrix */
     const wam7_real_t t586 = WAM7_C(0.55) * t418 - (t3 * t579 + t2 * t581);
-    const wam7_real_t t587 = parameters[YZ2] + t586;
-    const wam7_real_t t588 = t0 * t585 + t7 * t587;
+    const wam7_real_t t587 = parameters[YZ2] + t586; /* link j3: inertia of it and all beyond */
+    const wam7_real_t t588 = t0 * t585 + t7 * t587; /* link j2: column of the mass matrix */
     input_by_ddq[7] = WAM7_C(-0.07745783389167521) * t588;
-    const wam7_real_t t589 = t0 * t582 - t7 * t577;
+    const wam7_real_t t589 = t0 * t582 - t7 * t577; /* link j3: column of the mass matrix */
     input_by_ddq[14] = WAM7_C(0.07745783389167521) * t589;
-    const wam7_real_t t590 = t565 + WAM7_C(0.045) * t401;
+    const wam7_real_t t590 = t565 + WAM7_C(0.045) * t401; /* link j4: column of the mass matrix */
     const wam7_real_t t591 = t3 * t590 - t2 * t571 + WAM7_C(-0.55) * t470;
     const wam7_real_t t592 = t0 * t591 - t7 * t580;
     input_by_ddq[21] = WAM7_C(0.12156576707999026) * t592;
-    const wam7_real_t t593 = t560 + WAM7_C(-0.3) * t330;
+    const wam7_real_t t593 = t560 + WAM7_C(-0.3) * t330; /* link j5: column of the mass matrix */
     const wam7_real_t t594 = WAM7_C(0.045) * t330;
     const wam7_real_t t595 = t554 + t594;
     const wam7_real_t t596 = t13 * t593 - t26 * t595;
@@ -834,6 +929,7 @@ int wam7_inverse_dynamics_derivatives_standard(
     const wam7_real_t t599 = t26 * t593 + t13 * t595 - t594;
     const wam7_real_t t600 = t0 * t598 - t7 * t599;
     input_by_ddq[28] = WAM7_C(0.4469713223199599) * t600;
+    /* link j6: column of the mass matrix */
     const wam7_real_t t601 = t33 * t548 + t34 * t543 + WAM7_C(-0.3) * t494;
     const wam7_real_t t602 = WAM7_C(0.045) * t494;
     const wam7_real_t t603 = t558 + t602;
@@ -844,7 +940,7 @@ int wam7_inverse_dynamics_derivatives_standard(
     const wam7_real_t t608 = t26 * t601 + t13 * t603 - t602;
     const wam7_real_t t609 = t0 * t607 - t7 * t608;
     input_by_ddq[35] = WAM7_C(0.4469713223199599) * t609;
-    const wam7_real_t t610 = t56 * t538 + t39 * parameters[ZZ7];
+    const wam7_real_t t610 = t56 * t538 + t39 * parameters[ZZ7]; /* link j7: column of the mass matrix */
     const wam7_real_t t611 = t33 * t610 + t34 * t545 + WAM7_C(-0.3) * t517;
     const wam7_real_t t612 = t39 * t538 - t56 * parameters[ZZ7];
     const wam7_real_t t613 = WAM7_C(0.045) * t517;
@@ -856,49 +952,71 @@ int wam7_inverse_dynamics_derivatives_standard(
     const wam7_real_t t619 = t26 * t611 + t13 * t614 - t613;
     const wam7_real_t t620 = t0 * t618 - t7 * t619;
     input_by_ddq[42] = WAM7_C(0.9996900960702182) * t620;
-    const wam7_real_t t621 = WAM7_C(2.0) * t14;
+    const wam7_real_t t621 = WAM7_C(2.0) * t14; /* link j2: derivatives */
     const wam7_real_t t622 = WAM7_C(-2.0) * t1;
-    const wam7_real_t t623 = t103 + t224;
+    const wam7_real_t t623 = t103 + t224; /* link j3: motion */
+    /* link j2: derivatives */
     const wam7_real_t t624 = t424 * t621 + t441 * t622 + (t8 * t576 - t17 * t583 + t623 * t585);
-    const wam7_real_t t625 = parameters[MZ2] + t418;
+    const wam7_real_t t625 = parameters[MZ2] + t418; /* link j3: inertia of it and all beyond */
+    /* link j2: derivatives */
     const wam7_real_t t626 = t445 * t621 + t427 * t622 + (t8 * t583 - t17 * t578 + t623 * t587);
     const wam7_real_t t627 = t0 * (t232 + (t624 - t94 * t625)) + t7 * (t226 + (t626 + t105 * t625));
     input_by_q[1] = WAM7_C(0.05209961446285298) * t627;
+    /* link j3: inertia of it and all beyond */
     const wam7_real_t t628 = parameters[ZZ2] + (t564 - t574 + t575);
+    /* link j2: derivatives */
     const wam7_real_t t629 = t17 * t587 - t8 * t585 - t623 * t628 + (t14 * t449 + t1 * t452);
     const wam7_real_t t630 = t105 * (parameters[MY2] - t437) - t94 * (parameters[MX2] + t412) + t629;
     input_by_q[8] = WAM7_C(0.07745783389167521) * t630;
+    /* link j3: derivatives */
     const wam7_real_t t631 = t14 * t455 + t1 * t459 + (t8 * t582 + t17 * t577 + t623 * t586);
     input_by_q[15] = WAM7_C(0.07745783389167521) * (t631 + t105 * t418);
+    /* link j4: column of the mass matrix */
     const wam7_real_t t632 = t3 * t571 + t2 * t590 + WAM7_C(-0.55) * t469;
+    /* link j4: derivatives */
     const wam7_real_t t633 = t14 * t467 - t1 * t471 + (t8 * t591 + t17 * t580 - t623 * t632);
     input_by_q[22] = WAM7_C(0.12156576707999026) * (t633 + (t105 * t469 - t94 * t401));
+    /* link j5: column of the mass matrix */
     const wam7_real_t t634 = t3 * t596 + t2 * t597 + WAM7_C(-0.55) * t487;
+    /* link j5: derivatives */
     const wam7_real_t t635 = t14 * t485 - t1 * t489 + (t8 * t598 + t17 * t599 - t623 * t634);
     input_by_q[29] = WAM7_C(0.4469713223199599) * (t635 + (t105 * t487 + t94 * t480));
+    /* link j6: column of the mass matrix */
     const wam7_real_t t636 = t3 * t604 + t2 * t606 + WAM7_C(-0.55) * t506;
+    /* link j6: derivatives */
     const wam7_real_t t637 = t14 * t504 - t1 * t508 + (t8 * t607 + t17 * t608 - t623 * t636);
     input_by_q[36] = WAM7_C(0.4469713223199599) * (t637 + (t105 * t506 - t94 * t499));
+    /* link j7: column of the mass matrix */
     const wam7_real_t t638 = t3 * t615 + t2 * t617 + WAM7_C(-0.55) * t530;
+    /* link j7: derivatives */
     const wam7_real_t t639 = t14 * t528 - t1 * t532 + (t8 * t618 + t17 * t619 - t623 * t638);
     input_by_q[43] = WAM7_C(0.9996900960702182) * (t639 + (t105 * t530 + t94 * t523));
     const wam7_real_t t640 = parameters[ZZ2] - t439;
+    /* link j3: inertia, momentum beyond */
     const wam7_real_t t641 = dq[1] * parameters[YZ2] + t14 * t640 + (t447 - t395 + t418 * t413);
+    /* link j2: derivatives */
     const wam7_real_t t642 = t0 * (WAM7_C(2.0) * t641 + (t576 * t621 + t583 * t622));
+    /* link j3: inertia, momentum beyond */
     const wam7_real_t t643 = t3 * t442 + t2 * t443 - (dq[1] * parameters[XZ2] + t1 * t640);
+    /* link j2: derivatives */
     const wam7_real_t t644 = t7 * (WAM7_C(2.0) * t643 + (t583 * t621 + t578 * t622));
     input_by_dq[1] = WAM7_C(0.05209961446285298) * (t642 + t644);
     const wam7_real_t t645 = WAM7_C(2.0) * (t422 - t426 + (t421 + (t385 + t409 + t420)));
     const wam7_real_t t646 = WAM7_C(0.07745783389167521) * (t645 + WAM7_C(2.0) * (t1 * t587 - t14 * t585));
     input_by_dq[8] = WAM7_C(61.81619256017505) * parameters[FV2] + t646;
+    /* link j3: derivatives */
     const wam7_real_t t647 = t3 * t453 + t2 * t454 + WAM7_C(2.0) * (t14 * t582 + t1 * t577);
     input_by_dq[15] = WAM7_C(0.07745783389167521) * t647;
+    /* link j4: derivatives */
     const wam7_real_t t648 = t3 * t463 + t2 * t466 - t401 * t458 + WAM7_C(2.0) * (t14 * t591 + t1 * t580);
     input_by_dq[22] = WAM7_C(0.12156576707999026) * t648;
+    /* link j5: derivatives */
     const wam7_real_t t649 = t3 * t481 + t2 * t484 + t480 * t458 + WAM7_C(2.0) * (t14 * t598 + t1 * t599);
     input_by_dq[29] = WAM7_C(0.4469713223199599) * t649;
+    /* link j6: derivatives */
     const wam7_real_t t650 = t3 * t500 + t2 * t503 - t499 * t458 + WAM7_C(2.0) * (t14 * t607 + t1 * t608);
     input_by_dq[36] = WAM7_C(0.4469713223199599) * t650;
+    /* link j7: derivatives */
     const wam7_real_t t651 = t3 * t524 + t2 * t527 + t523 * t458 + WAM7_C(2.0) * (t14 * t618 + t1 * t619);
     input_by_dq[43] = WAM7_C(0.9996900960702182) * t651;
     input_by_ddq[1] = WAM7_C(-0.05209961446285298) * t588;
@@ -909,9 +1027,10 @@ int wam7_inverse_dynamics_derivatives_standard(
     input_by_ddq[29] = WAM7_C(0.4469713223199599) * t634;
     input_by_ddq[36] = WAM7_C(0.4469713223199599) * t636;
     input_by_ddq[43] = WAM7_C(0.9996900960702182) * t638;
-    const wam7_real_t t653 = WAM7_C(2.0) * t5;
+    const wam7_real_t t653 = WAM7_C(2.0) * t5; /* link j3: derivatives */
     const wam7_real_t t654 = WAM7_C(-2.0) * t4;
-    const wam7_real_t t655 = t212 + t98;
+    const wam7_real_t t655 = t212 + t98; /* link j4: motion */
+    /* link j3: derivatives */
     const wam7_real_t t656 = t407 * t653 + t388 * t654 + (t40 * t572 + t21 * t567 - t655 * t581);
     const wam7_real_t t657 = t198 + (t656 - t111 * t434);
     const wam7_real_t t658 = t385 * t653 + t395 * t654 + (t40 * t564 + t21 * t572 - t655 * t579);
@@ -929,15 +1048,19 @@ int wam7_inverse_dynamics_derivatives_standard(
     input_by_q[9] = WAM7_C(0.07745783389167521) * t668;
     const wam7_real_t t669 = WAM7_C(0.07745783389167521) * (t666 + (t665 + (t5 * t453 - t4 * t454)));
     input_by_q[16] = t669;
+    /* link j4: derivatives */
     const wam7_real_t t670 = t5 * t463 - t4 * t466 + (t40 * t571 + t21 * t590 + t655 * t580);
     input_by_q[23] = WAM7_C(0.12156576707999026) * (t670 + t111 * t379);
+    /* link j5: derivatives */
     const wam7_real_t t671 = t5 * t481 - t4 * t484 + (t40 * t596 + t21 * t597 + t655 * t599);
     input_by_q[30] = WAM7_C(0.4469713223199599) * (t671 + (t111 * t483 - t97 * t330));
+    /* link j6: derivatives */
     const wam7_real_t t672 = t5 * t500 - t4 * t503 + (t40 * t604 + t21 * t606 + t655 * t608);
     input_by_q[37] = WAM7_C(0.4469713223199599) * (t672 + (t111 * t502 - t97 * t494));
+    /* link j7: derivatives */
     const wam7_real_t t673 = t5 * t524 - t4 * t527 + (t40 * t615 + t21 * t617 + t655 * t619);
     input_by_q[44] = WAM7_C(0.9996900960702182) * (t673 + (t111 * t526 - t97 * t517));
-    const wam7_real_t t674 = WAM7_C(2.0) * t430 - (t564 * t653 + t572 * t654);
+    const wam7_real_t t674 = WAM7_C(2.0) * t430 - (t564 * t653 + t572 * t654); /* link j3: derivatives */
     const wam7_real_t t675 = WAM7_C(2.0) * t431 + (t572 * t653 + t567 * t654);
     const wam7_real_t t676 = WAM7_C(2.0) * t432 - t434 * t653;
     const wam7_real_t t677 = WAM7_C(2.0) * t433 + t434 * t654;
@@ -963,7 +1086,7 @@ int wam7_inverse_dynamics_derivatives_standard(
     input_by_ddq[30] = WAM7_C(-0.4469713223199599) * t599;
     input_by_ddq[37] = WAM7_C(-0.4469713223199599) * t608;
     input_by_ddq[44] = WAM7_C(-0.9996900960702182) * t619;
-    const wam7_real_t t686 = WAM7_C(2.0) * t44;
+    const wam7_real_t t686 = WAM7_C(2.0) * t44; /* link j4: derivatives */
     const wam7_real_t t687 = WAM7_C(2.0) * t28;
     const wam7_real_t t688 = t362 * t687 - t351 * t686 + (t27 * t553 - t47 * t561 + t217 * t568);
     const wam7_real_t t689 = t195 + (t688 - t108 * t374);
@@ -988,13 +1111,16 @@ int wam7_inverse_dynamics_derivatives_standard(
     input_by_q[17] = WAM7_C(0.07745783389167521) * t703;
     const wam7_real_t t705 = WAM7_C(0.12156576707999026) * (t698 + (t697 + (t28 * t461 - t44 * t460)));
     input_by_q[24] = t705;
+    /* link j5: derivatives */
     const wam7_real_t t706 = t28 * t479 - t44 * t475 + (t27 * t593 - t47 * t595 - t217 * t569);
     input_by_q[31] = WAM7_C(0.4469713223199599) * (t706 + t121 * t345);
+    /* link j6: derivatives */
     const wam7_real_t t707 = t28 * t498 - t44 * t495 + (t27 * t601 - t47 * t603 - t217 * t605);
     input_by_q[38] = WAM7_C(0.4469713223199599) * (t707 - (t121 * t497 + t108 * t328));
+    /* link j7: derivatives */
     const wam7_real_t t708 = t28 * t522 - t44 * t519 + (t27 * t611 - t47 * t614 - t217 * t616);
     input_by_q[45] = WAM7_C(0.9996900960702182) * (t708 + (t121 * t521 + t108 * t518));
-    const wam7_real_t t709 = WAM7_C(2.0) * t391 - (t553 * t686 + t561 * t687);
+    const wam7_real_t t709 = WAM7_C(2.0) * t391 - (t553 * t686 + t561 * t687); /* link j4: derivatives */
     const wam7_real_t t710 = WAM7_C(2.0) * t392 - (t561 * t686 + t556 * t687);
     const wam7_real_t t711 = t13 * t709 - t26 * t710;
     const wam7_real_t t712 = WAM7_C(2.0) * t371 - t374 * t687;
@@ -1023,7 +1149,7 @@ int wam7_inverse_dynamics_derivatives_standard(
     input_by_ddq[31] = WAM7_C(0.4469713223199599) * t569;
     input_by_ddq[38] = WAM7_C(0.4469713223199599) * t605;
     input_by_ddq[45] = WAM7_C(0.9996900960702182) * t616;
-    const wam7_real_t t724 = WAM7_C(2.0) * t36;
+    const wam7_real_t t724 = WAM7_C(2.0) * t36; /* link j5: derivatives */
     const wam7_real_t t725 = WAM7_C(-2.0) * t35;
     const wam7_real_t t726 = t298 * t724 + t308 * t725 + (t64 * t542 + t51 * t549 - t200 * t557);
     const wam7_real_t t727 = t726 + t117 * t340 - t173;
@@ -1054,11 +1180,13 @@ int wam7_inverse_dynamics_derivatives_standard(
     input_by_q[25] = WAM7_C(0.12156576707999026) * t743;
     const wam7_real_t t749 = WAM7_C(0.4469713223199599) * (t738 + (t737 + (t36 * t472 - t35 * t473)));
     input_by_q[32] = t749;
+    /* link j6: derivatives */
     const wam7_real_t t750 = t36 * t492 - t35 * t493 + (t64 * t548 - t51 * t543 + t200 * t558);
     input_by_q[39] = WAM7_C(0.4469713223199599) * (t750 - t115 * t339);
+    /* link j7: derivatives */
     const wam7_real_t t751 = t36 * t514 - t35 * t515 + (t64 * t610 - t51 * t545 + t200 * t612);
     input_by_q[46] = WAM7_C(0.9996900960702182) * (t751 + (t115 * t516 - t117 * t264));
-    const wam7_real_t t752 = WAM7_C(2.0) * t357 - (t542 * t724 + t549 * t725);
+    const wam7_real_t t752 = WAM7_C(2.0) * t357 - (t542 * t724 + t549 * t725); /* link j5: derivatives */
     const wam7_real_t t753 = WAM7_C(2.0) * t358 + (t549 * t724 - t544 * t725);
     const wam7_real_t t754 = WAM7_C(-2.0) * t319 - t340 * t724;
     const wam7_real_t t755 = WAM7_C(-2.0) * t321 + t340 * t725;
@@ -1093,7 +1221,7 @@ int wam7_inverse_dynamics_derivatives_standard(
     const wam7_real_t t772 = WAM7_C(-0.4469713223199599) * t558;
     input_by_ddq[39] = t772;
     input_by_ddq[46] = WAM7_C(-0.9996900960702182) * t612;
-    const wam7_real_t t773 = WAM7_C(2.0) * t58;
+    const wam7_real_t t773 = WAM7_C(2.0) * t58; /* link j6: derivatives */
     const wam7_real_t t774 = WAM7_C(-2.0) * t68;
     const wam7_real_t t775 = t277 * t774 - t293 * t773 + (t83 * t539 + t57 * t537 + t182 * t546);
     const wam7_real_t t776 = t775 + t127 * t324 - t152;
@@ -1130,9 +1258,10 @@ int wam7_inverse_dynamics_derivatives_standard(
     input_by_q[33] = WAM7_C(0.4469713223199599) * t791;
     const wam7_real_t t803 = WAM7_C(0.4469713223199599) * (t781 + (t780 - (t58 * t490 + t68 * t491)));
     input_by_q[40] = t803;
+    /* link j7: derivatives */
     const wam7_real_t t804 = t83 * t538 + t57 * parameters[ZZ7] + t182 * t545 - (t58 * t511 + t68 * t513);
     input_by_q[47] = WAM7_C(0.9996900960702182) * (t804 + t127 * t269);
-    const wam7_real_t t805 = WAM7_C(2.0) * t304 - (t536 * t773 + t539 * t774);
+    const wam7_real_t t805 = WAM7_C(2.0) * t304 - (t536 * t773 + t539 * t774); /* link j6: derivatives */
     const wam7_real_t t806 = WAM7_C(2.0) * t305 + (t537 * t774 - t539 * t773);
     const wam7_real_t t807 = t56 * t805 - t39 * t806;
     const wam7_real_t t808 = t493 - (t547 * t773 + t546 * t774);
@@ -1171,7 +1300,7 @@ int wam7_inverse_dynamics_derivatives_standard(
     input_by_ddq[33] = t772;
     input_by_ddq[40] = WAM7_C(40.16949152542373) * parameters[IA6] + WAM7_C(-0.4469713223199599) * t543;
     input_by_ddq[47] = WAM7_C(-0.9996900960702182) * t545;
-    const wam7_real_t t829 = WAM7_C(2.0) * t73;
+    const wam7_real_t t829 = WAM7_C(2.0) * t73; /* link j7: derivatives */
     const wam7_real_t t830 = WAM7_C(-2.0) * t78;
     const wam7_real_t t831 = t253 * t829 + t260 * t830 + (t77 * parameters[XX7] - t72 * parameters[XY7]
         - t177 * parameters[XZ7]);

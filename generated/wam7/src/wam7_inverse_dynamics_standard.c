@@ -6,7 +6,7 @@
  * Arm wam7, description 552353c9ea1f05cf.
  * SPDX-License-Identifier: 0BSD
  *
- * Operations: 767 (399 mul, 368 add, 0 neg), 12 trig, 7 other.
+ * Operations: 767 (399 mul, 368 add, 0 neg), 12 trig, 7 other calls (sign, select and the like).
  *
  * @param[in]   q           [7]   [rad]      joint coordinates; norm at most 10000
  * @param[in]   dq          [7]   [rad/s]    joint velocities; norm at most 100000
@@ -120,11 +120,11 @@
  */
 #include "wam7_private.h"
 
-#if WAM7_GENERATION != 0x7A21915FUL
+#if WAM7_GENERATION != 0x0E2B7B26UL
 #error "wam7.h and wam7_inverse_dynamics_standard.c are of different generations: generate the arm again"
 #endif
 
-int wam7_inverse_dynamics_standard(
+wam7_status_t wam7_inverse_dynamics_standard(
     const wam7_real_t q[WAM7_N_JOINTS],
     const wam7_real_t dq[WAM7_N_JOINTS],
     const wam7_real_t ddq[WAM7_N_JOINTS],
@@ -136,7 +136,7 @@ int wam7_inverse_dynamics_standard(
         XX5, XY5, XZ5, YY5, YZ5, ZZ5, MX5, MY5, MZ5, M5, XX6, XY6, XZ6, YY6, YZ6, ZZ6, MX6, MY6, MZ6, M6, XX7,
         XY7, XZ7, YY7, YZ7, ZZ7, MX7, MY7, MZ7, M7, FV1, FC1, IA1, FV2, FC2, IA2, FV3, FC3, IA3, FV4, FC4,
         IA4, FV5, FC5, IA5, FV6, FC6, IA6, FV7, FC7, IA7 };
-    int status = WAM7_STATUS_OK;
+    wam7_status_t status = WAM7_STATUS_OK;
 
     if (!wam7_within_joints(q, WAM7_C(1.0e8))
         || !wam7_within_joints(dq, WAM7_C(1.0e10))
@@ -161,66 +161,66 @@ int wam7_inverse_dynamics_standard(
     WAM7_SINCOS(q[5], &t39, &t56);
     wam7_real_t t71, t63;
     WAM7_SINCOS(q[6], &t71, &t63);
-    const wam7_real_t t1 = t0 * dq[0];
-    const wam7_real_t t4 = t3 * dq[1] - t2 * t1;
+    const wam7_real_t t1 = t0 * dq[0]; /* link j2: motion */
+    const wam7_real_t t4 = t3 * dq[1] - t2 * t1; /* link j3: motion */
     const wam7_real_t t5 = t3 * t1 + t2 * dq[1];
     const wam7_real_t t6 = t4 * t5;
-    const wam7_real_t t8 = t7 * ddq[0];
+    const wam7_real_t t8 = t7 * ddq[0]; /* link j2: motion */
     const wam7_real_t t9 = dq[1] * t1;
     const wam7_real_t t10 = t8 - t9;
-    const wam7_real_t t11 = ddq[2] + t10;
-    const wam7_real_t t12 = t6 - t11;
-    const wam7_real_t t14 = t7 * dq[0];
+    const wam7_real_t t11 = ddq[2] + t10; /* link j3: motion */
+    const wam7_real_t t12 = t6 - t11; /* link j4: motion */
+    const wam7_real_t t14 = t7 * dq[0]; /* link j2: motion */
     const wam7_real_t t15 = t1 * t14;
-    const wam7_real_t t16 = t15 - ddq[1];
-    const wam7_real_t t17 = t0 * ddq[0];
+    const wam7_real_t t16 = t15 - ddq[1]; /* link j3: motion */
+    const wam7_real_t t17 = t0 * ddq[0]; /* link j2: motion */
     const wam7_real_t t18 = dq[1] * t14;
     const wam7_real_t t19 = t17 + t18;
-    const wam7_real_t t20 = t18 + t19;
+    const wam7_real_t t20 = t18 + t19; /* link j3: motion */
     const wam7_real_t t21 = t3 * t16 + t2 * t20;
     const wam7_real_t t22 = dq[2] + t14;
     const wam7_real_t t23 = t5 * t22;
     const wam7_real_t t24 = t23 - t21;
-    const wam7_real_t t25 = t23 + t24;
+    const wam7_real_t t25 = t23 + t24; /* link j4: motion */
     const wam7_real_t t27 = t26 * t25 - t13 * t12;
     const wam7_real_t t28 = t26 * t22 - t13 * t4;
     const wam7_real_t t29 = dq[3] + t5;
     const wam7_real_t t30 = t28 * t29;
     const wam7_real_t t31 = t27 - t30;
-    const wam7_real_t t32 = ddq[4] + t31;
+    const wam7_real_t t32 = ddq[4] + t31; /* link j5: motion */
     const wam7_real_t t35 = t34 * t29 - t33 * t28;
     const wam7_real_t t36 = t34 * t28 + t33 * t29;
     const wam7_real_t t37 = t35 * t36;
-    const wam7_real_t t38 = t32 - t37;
-    const wam7_real_t t40 = t3 * t20 - t2 * t16;
+    const wam7_real_t t38 = t32 - t37; /* link j6: motion */
+    const wam7_real_t t40 = t3 * t20 - t2 * t16; /* link j3: motion */
     const wam7_real_t t41 = t4 * t22;
     const wam7_real_t t42 = t41 - t40;
-    const wam7_real_t t43 = t42 - ddq[3];
+    const wam7_real_t t43 = t42 - ddq[3]; /* link j4: motion */
     const wam7_real_t t44 = t26 * t4 + t13 * t22;
     const wam7_real_t t45 = t28 * t44;
-    const wam7_real_t t46 = t43 + t45;
-    const wam7_real_t t47 = t26 * t12 + t13 * t25;
+    const wam7_real_t t46 = t43 + t45; /* link j5: motion */
+    const wam7_real_t t47 = t26 * t12 + t13 * t25; /* link j4: motion */
     const wam7_real_t t48 = t44 * t29;
     const wam7_real_t t49 = t47 - t48;
-    const wam7_real_t t50 = t49 - t48;
+    const wam7_real_t t50 = t49 - t48; /* link j5: motion */
     const wam7_real_t t51 = t33 * t50 - t34 * t46;
     const wam7_real_t t52 = dq[4] + t44;
     const wam7_real_t t53 = t36 * t52;
     const wam7_real_t t54 = t51 + t53;
-    const wam7_real_t t55 = t53 + t54;
+    const wam7_real_t t55 = t53 + t54; /* link j6: motion */
     const wam7_real_t t57 = t39 * t38 - t56 * t55;
     const wam7_real_t t58 = t39 * t35 + t56 * t52;
     const wam7_real_t t59 = dq[5] + t36;
     const wam7_real_t t60 = t58 * t59;
     const wam7_real_t t61 = t57 + t60;
-    const wam7_real_t t62 = t60 + t61;
-    const wam7_real_t t64 = t33 * t46 + t34 * t50;
+    const wam7_real_t t62 = t60 + t61; /* link j7: motion */
+    const wam7_real_t t64 = t33 * t46 + t34 * t50; /* link j5: motion */
     const wam7_real_t t65 = t35 * t52;
     const wam7_real_t t66 = t64 + t65;
-    const wam7_real_t t67 = t66 - ddq[5];
+    const wam7_real_t t67 = t66 - ddq[5]; /* link j6: motion */
     const wam7_real_t t68 = t39 * t52 - t56 * t35;
     const wam7_real_t t69 = t68 * t58;
-    const wam7_real_t t70 = t67 + t69;
+    const wam7_real_t t70 = t67 + t69; /* link j7: motion */
     const wam7_real_t t72 = t71 * t70 + t63 * t62;
     const wam7_real_t t73 = t71 * t68 + t63 * t59;
     const wam7_real_t t74 = dq[6] + t58;
@@ -230,217 +230,266 @@ int wam7_inverse_dynamics_standard(
     const wam7_real_t t78 = t71 * t59 - t63 * t68;
     const wam7_real_t t79 = t78 * t74;
     const wam7_real_t t80 = t79 - t77;
-    const wam7_real_t t81 = t79 + t80;
+    const wam7_real_t t81 = t79 + t80; /* link j7: columns */
+    /* link j7: force and moment */
     const wam7_real_t t82 = t75 * (parameters[YY7] - parameters[ZZ7]) - t76 * parameters[XX7]
         + t81 * parameters[XY7];
-    const wam7_real_t t83 = t56 * t38 + t39 * t55;
+    const wam7_real_t t83 = t56 * t38 + t39 * t55; /* link j6: motion */
     const wam7_real_t t84 = t68 * t59;
     const wam7_real_t t85 = t83 - t84;
-    const wam7_real_t t86 = ddq[6] + t85;
+    const wam7_real_t t86 = ddq[6] + t85; /* link j7: motion */
     const wam7_real_t t87 = t78 * t73;
-    const wam7_real_t t88 = t86 + t87;
-    const wam7_real_t t89 = t73 * t73;
+    const wam7_real_t t88 = t86 + t87; /* link j7: columns */
+    const wam7_real_t t89 = t73 * t73; /* link j7: motion */
     const wam7_real_t t90 = t74 * t74;
-    const wam7_real_t t91 = t44 * t44;
+    const wam7_real_t t91 = t44 * t44; /* link j4: motion */
     const wam7_real_t t92 = t29 * t29;
-    const wam7_real_t t93 = t91 + t92;
-    const wam7_real_t t94 = WAM7_C(9.81) * t0;
-    const wam7_real_t t95 = t94 + WAM7_C(0.55) * t16;
+    const wam7_real_t t93 = t91 + t92; /* link j5: motion */
+    const wam7_real_t t94 = WAM7_C(9.81) * t0; /* link j2: motion */
+    const wam7_real_t t95 = t94 + WAM7_C(0.55) * t16; /* link j3: motion */
     const wam7_real_t t96 = WAM7_C(0.55) * t20;
     const wam7_real_t t97 = t2 * t95 - t3 * t96;
     const wam7_real_t t98 = t5 * t5;
     const wam7_real_t t99 = t22 * t22;
-    const wam7_real_t t100 = t98 + t99;
+    const wam7_real_t t100 = t98 + t99; /* link j4: motion */
     const wam7_real_t t101 = t97 + WAM7_C(0.045) * t100;
     const wam7_real_t t102 = t41 + t42;
-    const wam7_real_t t103 = t1 * t1;
+    const wam7_real_t t103 = t1 * t1; /* link j2: motion */
     const wam7_real_t t104 = dq[1] * dq[1];
     const wam7_real_t t105 = WAM7_C(-9.81) * t7;
-    const wam7_real_t t106 = t105 + WAM7_C(0.55) * (t103 + t104);
-    const wam7_real_t t107 = t106 + WAM7_C(-0.045) * t102;
+    const wam7_real_t t106 = t105 + WAM7_C(0.55) * (t103 + t104); /* link j3: motion */
+    const wam7_real_t t107 = t106 + WAM7_C(-0.045) * t102; /* link j4: motion */
     const wam7_real_t t108 = t13 * t101 - t26 * t107;
-    const wam7_real_t t109 = t108 + (WAM7_C(-0.045) * t93 + WAM7_C(0.3) * t46);
+    const wam7_real_t t109 = t108 + (WAM7_C(-0.045) * t93 + WAM7_C(0.3) * t46); /* link j5: motion */
     const wam7_real_t t110 = t31 - t30;
-    const wam7_real_t t111 = t3 * t95 + t2 * t96;
-    const wam7_real_t t112 = t11 + t6;
+    const wam7_real_t t111 = t3 * t95 + t2 * t96; /* link j3: motion */
+    const wam7_real_t t112 = t11 + t6; /* link j4: motion */
     const wam7_real_t t113 = t111 + WAM7_C(0.045) * t112;
-    const wam7_real_t t114 = t113 + (WAM7_C(-0.045) * t110 - WAM7_C(0.3) * t50);
+    const wam7_real_t t114 = t113 + (WAM7_C(-0.045) * t110 - WAM7_C(0.3) * t50); /* link j5: motion */
     const wam7_real_t t115 = t34 * t109 + t33 * t114;
-    const wam7_real_t t116 = t115 + WAM7_C(0.06) * t62;
-    const wam7_real_t t117 = t33 * t109 - t34 * t114;
+    const wam7_real_t t116 = t115 + WAM7_C(0.06) * t62; /* link j7: motion */
+    const wam7_real_t t117 = t33 * t109 - t34 * t114; /* link j5: motion */
     const wam7_real_t t118 = t43 - t45;
-    const wam7_real_t t119 = t28 * t28;
-    const wam7_real_t t120 = t119 + t92;
-    const wam7_real_t t121 = t26 * t101 + t13 * t107;
-    const wam7_real_t t122 = t121 - (WAM7_C(-0.045) * t118 - WAM7_C(0.3) * t120);
-    const wam7_real_t t123 = t56 * t117 - t39 * t122;
-    const wam7_real_t t124 = t123 - WAM7_C(-0.06) * t70;
+    const wam7_real_t t119 = t28 * t28; /* link j4: motion */
+    const wam7_real_t t120 = t119 + t92; /* link j5: motion */
+    const wam7_real_t t121 = t26 * t101 + t13 * t107; /* link j4: motion */
+    const wam7_real_t t122 = t121 - (WAM7_C(-0.045) * t118 - WAM7_C(0.3) * t120); /* link j5: motion */
+    const wam7_real_t t123 = t56 * t117 - t39 * t122; /* link j6: motion */
+    const wam7_real_t t124 = t123 - WAM7_C(-0.06) * t70; /* link j7: motion */
     const wam7_real_t t125 = t71 * t124 + t63 * t116;
-    const wam7_real_t t126 = t39 * t117 + t56 * t122;
+    const wam7_real_t t126 = t39 * t117 + t56 * t122; /* link j6: motion */
     const wam7_real_t t127 = t68 * t68;
     const wam7_real_t t128 = t59 * t59;
-    const wam7_real_t t129 = t127 + t128;
+    const wam7_real_t t129 = t127 + t128; /* link j7: motion */
     const wam7_real_t t130 = t126 + WAM7_C(0.06) * t129;
+    /* link j7: force and moment */
     const wam7_real_t t131 = (t89 - t90) * parameters[YZ7] - (t82 - t88 * parameters[XZ7])
         - (t130 * parameters[MY7] + t125 * parameters[MZ7]);
-    const wam7_real_t t132 = t75 + t76;
+    const wam7_real_t t132 = t75 + t76; /* link j7: columns */
+    /* link j7: force and moment */
     const wam7_real_t t133 = t132 * parameters[XY7] - (t79 * (parameters[ZZ7] - parameters[XX7])
         + t80 * parameters[YY7]);
-    const wam7_real_t t134 = t86 - t87;
-    const wam7_real_t t135 = t78 * t78;
+    const wam7_real_t t134 = t86 - t87; /* link j7: columns */
+    const wam7_real_t t135 = t78 * t78; /* link j7: motion */
     const wam7_real_t t136 = t71 * t116 - t63 * t124;
+    /* link j7: force and moment */
     const wam7_real_t t137 = (t90 - t135) * parameters[XZ7] + (t133 + t134 * parameters[YZ7])
         + (t136 * parameters[MZ7] + t130 * parameters[MX7]);
     const wam7_real_t t138 = t77 * parameters[MZ7] - ((t89 + t90) * parameters[MX7] + t134 * parameters[MY7]);
     const wam7_real_t t139 = t136 * parameters[M7] + t138;
     const wam7_real_t t140 = (t135 + t90) * parameters[MY7] - t88 * parameters[MX7] - t72 * parameters[MZ7];
     const wam7_real_t t141 = t125 * parameters[M7] - t140;
-    const wam7_real_t t142 = t71 * t139 + t63 * t141;
-    const wam7_real_t t143 = t85 - t84;
+    const wam7_real_t t142 = t71 * t139 + t63 * t141; /* link j7: what it passes on */
+    const wam7_real_t t143 = t85 - t84; /* link j7: motion */
+    /* link j6: force and moment */
     const wam7_real_t t144 = t61 * parameters[XX6] - t60 * (parameters[YY6] - parameters[ZZ6])
         + t143 * parameters[XY6];
-    const wam7_real_t t145 = t67 - t69;
-    const wam7_real_t t146 = t58 * t58;
+    const wam7_real_t t145 = t67 - t69; /* link j7: motion */
+    const wam7_real_t t146 = t58 * t58; /* link j6: motion */
+    /* link j6: force and moment */
     const wam7_real_t t147 = (t128 - t146) * parameters[YZ6] + (t144 + t145 * parameters[XZ6])
         + (t126 * parameters[MZ6] - t115 * parameters[MY6]);
+    /* link j7: what it passes on */
     const wam7_real_t t148 = t147 + (t71 * t137 - t63 * t131 + WAM7_C(0.06) * t142);
+    /* link j6: force and moment */
     const wam7_real_t t149 = t84 * (parameters[XX6] - parameters[ZZ6]) + t85 * parameters[YY6]
         + t62 * parameters[XY6];
     const wam7_real_t t150 = (t127 - t128) * parameters[XZ6] + (t149 + t70 * parameters[YZ6])
         + (t123 * parameters[MZ6] + t115 * parameters[MX6]);
+    /* link j7: force and moment */
     const wam7_real_t t151 = t86 * parameters[ZZ7] - t87 * (parameters[XX7] - parameters[YY7])
         + t77 * parameters[YZ7];
     const wam7_real_t t152 = (t135 - t89) * parameters[XY7] + (t151 - t72 * parameters[XZ7])
         + (t125 * parameters[MX7] - t136 * parameters[MY7]);
-    const wam7_real_t t153 = t150 + t152;
-    const wam7_real_t t154 = t65 + t66;
+    const wam7_real_t t153 = t150 + t152; /* link j7: what it passes on */
+    const wam7_real_t t154 = t65 + t66; /* link j6: motion */
+    /* link j5: force and moment */
     const wam7_real_t t155 = t53 * (parameters[YY5] - parameters[ZZ5]) - t54 * parameters[XX5]
         + t154 * parameters[XY5];
-    const wam7_real_t t156 = t32 + t37;
-    const wam7_real_t t157 = t36 * t36;
+    const wam7_real_t t156 = t32 + t37; /* link j6: motion */
+    const wam7_real_t t157 = t36 * t36; /* link j5: motion */
     const wam7_real_t t158 = t52 * t52;
+    /* link j5: force and moment */
     const wam7_real_t t159 = (t157 - t158) * parameters[YZ5] - (t155 - t156 * parameters[XZ5])
         - (t122 * parameters[MY5] + t115 * parameters[MZ5]);
-    const wam7_real_t t160 = t159 + (t39 * t153 - t56 * t148);
-    const wam7_real_t t161 = t63 * t139 - t71 * t141;
+    const wam7_real_t t160 = t159 + (t39 * t153 - t56 * t148); /* link j6: what it passes on */
+    const wam7_real_t t161 = t63 * t139 - t71 * t141; /* link j7: what it passes on */
+    /* link j6: force and moment */
     const wam7_real_t t162 = t69 * (parameters[XX6] - parameters[YY6]) + t67 * parameters[ZZ6]
         + t83 * parameters[YZ6];
     const wam7_real_t t163 = (t127 - t146) * parameters[XY6] - (t162 + t57 * parameters[XZ6])
         + (t126 * parameters[MX6] + t123 * parameters[MY6]);
+    /* link j7: what it passes on */
     const wam7_real_t t164 = t163 + (t71 * t131 + t63 * t137 + WAM7_C(0.06) * t161);
+    /* link j5: force and moment */
     const wam7_real_t t165 = t55 * parameters[XY5] - (t65 * (parameters[ZZ5] - parameters[XX5])
         + t66 * parameters[YY5]);
-    const wam7_real_t t166 = t35 * t35;
+    const wam7_real_t t166 = t35 * t35; /* link j5: motion */
+    /* link j5: force and moment */
     const wam7_real_t t167 = (t158 - t166) * parameters[XZ5] + (t165 + t38 * parameters[YZ5])
         + (t122 * parameters[MX5] - t117 * parameters[MZ5]);
-    const wam7_real_t t168 = t167 + t164;
+    const wam7_real_t t168 = t167 + t164; /* link j6: what it passes on */
+    /* link j6: force and moment */
     const wam7_real_t t169 = (t146 + t128) * parameters[MX6] - t70 * parameters[MY6] + t83 * parameters[MZ6];
-    const wam7_real_t t170 = t123 * parameters[M6] + t169 - t161;
+    const wam7_real_t t170 = t123 * parameters[M6] + t169 - t161; /* link j7: what it passes on */
+    /* link j6: force and moment */
     const wam7_real_t t171 = t129 * parameters[MY6] + t145 * parameters[MX6] - t57 * parameters[MZ6]
         - t126 * parameters[M6];
+    /* link j7: force and moment */
     const wam7_real_t t172 = t81 * parameters[MX7] + t132 * parameters[MY7] - (t135 + t89) * parameters[MZ7];
-    const wam7_real_t t173 = t171 + (t172 - t130 * parameters[M7]);
+    const wam7_real_t t173 = t171 + (t172 - t130 * parameters[M7]); /* link j7: what it passes on */
+    /* link j5: force and moment */
     const wam7_real_t t174 = (t157 + t158) * parameters[MX5] + t38 * parameters[MY5] + t64 * parameters[MZ5];
+    /* link j6: what it passes on */
     const wam7_real_t t175 = t39 * t173 - t56 * t170 - (t117 * parameters[M5] + t174);
+    /* link j6: force and moment */
     const wam7_real_t t176 = (t127 + t146) * parameters[MZ6] + (t62 * parameters[MY6]
         - t143 * parameters[MX6]);
+    /* link j5: force and moment */
     const wam7_real_t t177 = (t166 + t158) * parameters[MY5] - t156 * parameters[MX5] + t51 * parameters[MZ5];
+    /* link j6: what it passes on */
     const wam7_real_t t178 = t115 * parameters[M5] - t177 + (t115 * parameters[M6] - t176 + t142);
-    const wam7_real_t t179 = t34 * t175 + t33 * t178;
+    const wam7_real_t t179 = t34 * t175 + t33 * t178; /* link j5: what it passes on */
+    /* link j4: force and moment */
     const wam7_real_t t180 = t110 * parameters[XY4] - (t48 * (parameters[YY4] - parameters[ZZ4])
         + t49 * parameters[XX4]);
     const wam7_real_t t181 = (t92 - t91) * parameters[YZ4] + (t180 + t118 * parameters[XZ4])
         + (t121 * parameters[MZ4] - t113 * parameters[MY4]);
+    /* link j5: what it passes on */
     const wam7_real_t t182 = t181 + (t34 * t168 - t33 * t160 + WAM7_C(0.3) * t179);
+    /* link j5: force and moment */
     const wam7_real_t t183 = t32 * parameters[ZZ5] - t37 * (parameters[XX5] - parameters[YY5])
         - t64 * parameters[YZ5];
     const wam7_real_t t184 = (t166 - t157) * parameters[XY5] + (t183 + t51 * parameters[XZ5])
         + (t115 * parameters[MX5] + t117 * parameters[MY5]);
-    const wam7_real_t t185 = t184 + (t39 * t148 + t56 * t153);
+    const wam7_real_t t185 = t184 + (t39 * t148 + t56 * t153); /* link j6: what it passes on */
+    /* link j4: force and moment */
     const wam7_real_t t186 = t30 * (parameters[XX4] - parameters[ZZ4]) + t31 * parameters[YY4]
         - t50 * parameters[XY4];
     const wam7_real_t t187 = (t119 - t92) * parameters[XZ4] + (t186 + t46 * parameters[YZ4])
         + (t108 * parameters[MZ4] + t113 * parameters[MX4]);
-    const wam7_real_t t188 = t187 + (t185 + WAM7_C(-0.045) * t179);
+    const wam7_real_t t188 = t187 + (t185 + WAM7_C(-0.045) * t179); /* link j5: what it passes on */
+    /* link j3: force and moment */
     const wam7_real_t t189 = t23 * (parameters[YY3] - parameters[ZZ3]) - t24 * parameters[XX3]
         + t102 * parameters[XY3];
     const wam7_real_t t190 = (t98 - t99) * parameters[YZ3] - (t189 - t112 * parameters[XZ3])
         - (t106 * parameters[MY3] + t111 * parameters[MZ3]);
-    const wam7_real_t t191 = t190 + (t26 * t188 - t13 * t182);
-    const wam7_real_t t192 = t33 * t175 - t34 * t178;
+    const wam7_real_t t191 = t190 + (t26 * t188 - t13 * t182); /* link j4: what it passes on */
+    const wam7_real_t t192 = t33 * t175 - t34 * t178; /* link j5: what it passes on */
+    /* link j5: force and moment */
     const wam7_real_t t193 = t154 * parameters[MX5] + t55 * parameters[MY5] - (t166 + t157) * parameters[MZ5];
+    /* link j6: what it passes on */
     const wam7_real_t t194 = t193 - t122 * parameters[M5] + (t39 * t170 + t56 * t173);
+    /* link j5: what it passes on */
     const wam7_real_t t195 = t34 * t160 + t33 * t168 + (WAM7_C(0.045) * t194 + WAM7_C(0.3) * t192);
+    /* link j4: force and moment */
     const wam7_real_t t196 = t45 * (parameters[XX4] - parameters[YY4]) + t43 * parameters[ZZ4]
         + t27 * parameters[YZ4];
     const wam7_real_t t197 = (t119 - t91) * parameters[XY4] + (t47 * parameters[XZ4] - t196)
         + (t121 * parameters[MX4] + t108 * parameters[MY4]);
-    const wam7_real_t t198 = t197 + t195;
+    const wam7_real_t t198 = t197 + t195; /* link j5: what it passes on */
+    /* link j4: force and moment */
     const wam7_real_t t199 = t46 * parameters[MY4] - t93 * parameters[MX4] - t27 * parameters[MZ4]
         - t108 * parameters[M4];
-    const wam7_real_t t200 = t199 + t192;
+    const wam7_real_t t200 = t199 + t192; /* link j5: what it passes on */
+    /* link j4: force and moment */
     const wam7_real_t t201 = t121 * parameters[M4] - (t120 * parameters[MY4] + t118 * parameters[MX4]
         + t47 * parameters[MZ4]);
-    const wam7_real_t t202 = t201 - t194;
+    const wam7_real_t t202 = t201 - t194; /* link j5: what it passes on */
+    /* link j3: force and moment */
     const wam7_real_t t203 = t25 * parameters[XY3] - (t41 * (parameters[ZZ3] - parameters[XX3])
         + t42 * parameters[YY3]);
-    const wam7_real_t t204 = t4 * t4;
+    const wam7_real_t t204 = t4 * t4; /* link j3: motion */
+    /* link j3: force and moment */
     const wam7_real_t t205 = (t99 - t204) * parameters[XZ3] + (t203 - t12 * parameters[YZ3])
         + (t106 * parameters[MX3] - t97 * parameters[MZ3]);
+    /* link j4: what it passes on */
     const wam7_real_t t206 = t205 + (t198 + WAM7_C(0.045) * (t26 * t200 + t13 * t202));
+    /* link j3: force and moment */
     const wam7_real_t t207 = t12 * parameters[MY3] - t100 * parameters[MX3] + t40 * parameters[MZ3]
         - t97 * parameters[M3];
-    const wam7_real_t t208 = t207 + (t13 * t200 - t26 * t202);
+    const wam7_real_t t208 = t207 + (t13 * t200 - t26 * t202); /* link j4: what it passes on */
+    /* link j4: force and moment */
     const wam7_real_t t209 = t110 * parameters[MX4] + t50 * parameters[MY4] - (t119 + t91) * parameters[MZ4];
-    const wam7_real_t t210 = t113 * parameters[M4] + t209 + t179;
+    const wam7_real_t t210 = t113 * parameters[M4] + t209 + t179; /* link j5: what it passes on */
+    /* link j3: force and moment */
     const wam7_real_t t211 = (t204 + t99) * parameters[MY3] - t112 * parameters[MX3] - t21 * parameters[MZ3];
-    const wam7_real_t t212 = t111 * parameters[M3] - t211 + t210;
+    const wam7_real_t t212 = t111 * parameters[M3] - t211 + t210; /* link j4: what it passes on */
+    /* link j3: what it passes on */
     const wam7_real_t t213 = t3 * t206 - t2 * t191 + WAM7_C(0.55) * (t3 * t208 + t2 * t212);
+    /* link j2: force and moment */
     const wam7_real_t t214 = t18 * (parameters[ZZ2] - parameters[YY2]) + t19 * parameters[XX2] + (t10
         - t9) * parameters[XY2];
-    const wam7_real_t t215 = t14 * t14;
+    const wam7_real_t t215 = t14 * t14; /* link j2: motion */
+    /* link j2: force and moment */
     const wam7_real_t t216 = (t104 - t215) * parameters[YZ2] + (t214 - (ddq[1] + t15) * parameters[XZ2]);
+    /* link j3: force and moment */
     const wam7_real_t t217 = t11 * parameters[ZZ3] - t6 * (parameters[XX3] - parameters[YY3])
         + t40 * parameters[YZ3];
     const wam7_real_t t218 = (t204 - t98) * parameters[XY3] + (t217 - t21 * parameters[XZ3])
         + (t111 * parameters[MX3] + t97 * parameters[MY3]);
+    /* link j4: what it passes on */
     const wam7_real_t t219 = t218 + (t26 * t182 + t13 * t188 + WAM7_C(0.045) * t210);
+    /* link j2: force and moment */
     const wam7_real_t t220 = t9 * (parameters[XX2] - parameters[ZZ2]) + t10 * parameters[YY2]
         + t20 * parameters[XY2];
     const wam7_real_t t221 = t94 * parameters[MZ2] + ((t103 - t104) * parameters[XZ2] + (t220
         + t16 * parameters[YZ2]));
+    /* link j2: what it passes on */
     const wam7_real_t t222 = t0 * (t105 * parameters[MZ2] + t216 + t213) + t7 * (t221 + t219);
-    const wam7_real_t t223 = wam7_sign(dq[0]);
+    const wam7_real_t t223 = wam7_sign(dq[0]); /* joint j1: coulomb_friction */
     const wam7_real_t t224 = WAM7_C(42.0) * dq[0] * parameters[FV1] + t223 * parameters[FC1]
         + WAM7_C(42.0) * ddq[0] * parameters[IA1];
     out[0] = WAM7_C(2.1881838074398248) * t224 + WAM7_C(0.05209961446285298) * (ddq[0] * parameters[ZZ1]
         + t222);
+    /* link j3: what it passes on */
     const wam7_real_t t225 = t3 * t191 + t2 * t206 + WAM7_C(0.55) * (t2 * t208 - t3 * t212);
+    /* link j2: force and moment */
     const wam7_real_t t226 = t15 * (parameters[YY2] - parameters[XX2]) + ddq[1] * parameters[ZZ2]
         - t8 * parameters[YZ2];
     const wam7_real_t t227 = t105 * parameters[MX2] + t94 * parameters[MY2] + ((t103 - t215) * parameters[XY2]
         + (t226 - t17 * parameters[XZ2]));
-    const wam7_real_t t228 = wam7_sign(dq[1]);
+    const wam7_real_t t228 = wam7_sign(dq[1]); /* joint j2: coulomb_friction */
     const wam7_real_t t229 = WAM7_C(28.25) * dq[1] * parameters[FV2] + t228 * parameters[FC2]
         + WAM7_C(28.25) * ddq[1] * parameters[IA2];
     out[1] = WAM7_C(2.1881838074398248) * t229 + WAM7_C(0.07745783389167521) * (t227 + t225);
-    const wam7_real_t t230 = wam7_sign(dq[2]);
+    const wam7_real_t t230 = wam7_sign(dq[2]); /* joint j3: coulomb_friction */
     const wam7_real_t t231 = WAM7_C(28.25) * dq[2] * parameters[FV3] + t230 * parameters[FC3]
         + WAM7_C(28.25) * ddq[2] * parameters[IA3];
     out[2] = WAM7_C(2.1881838074398248) * t231 + WAM7_C(0.07745783389167521) * t219;
-    const wam7_real_t t232 = wam7_sign(dq[3]);
+    const wam7_real_t t232 = wam7_sign(dq[3]); /* joint j4: coulomb_friction */
     const wam7_real_t t233 = WAM7_C(18.0) * dq[3] * parameters[FV4] + t232 * parameters[FC4]
         + WAM7_C(18.0) * ddq[3] * parameters[IA4];
     out[3] = WAM7_C(2.1881838074398248) * t233 + WAM7_C(0.12156576707999026) * t198;
-    const wam7_real_t t234 = wam7_sign(dq[4]);
+    const wam7_real_t t234 = wam7_sign(dq[4]); /* joint j5: coulomb_friction */
     const wam7_real_t t235 = WAM7_C(9.48) * dq[4] * parameters[FV5] + t234 * parameters[FC5]
         + WAM7_C(9.48) * ddq[4] * parameters[IA5];
     out[4] = WAM7_C(4.237288135593221) * t235 + WAM7_C(0.4469713223199599) * t185;
-    const wam7_real_t t236 = wam7_sign(dq[5]);
+    const wam7_real_t t236 = wam7_sign(dq[5]); /* joint j6: coulomb_friction */
     const wam7_real_t t237 = WAM7_C(9.48) * dq[5] * parameters[FV6] + t236 * parameters[FC6]
         + WAM7_C(9.48) * ddq[5] * parameters[IA6];
     out[5] = WAM7_C(4.237288135593221) * t237 + WAM7_C(0.4469713223199599) * t164;
-    const wam7_real_t t238 = wam7_sign(dq[6]);
+    const wam7_real_t t238 = wam7_sign(dq[6]); /* joint j7: coulomb_friction */
     const wam7_real_t t239 = WAM7_C(14.93) * dq[6] * parameters[FV7] + t238 * parameters[FC7]
         + WAM7_C(14.93) * ddq[6] * parameters[IA7];
     out[6] = WAM7_C(14.925373134328357) * t239 + WAM7_C(0.9996900960702182) * t152;

@@ -23,15 +23,15 @@
  */
 #include "wam7_private.h"
 
-#if WAM7_GENERATION != 0x7A21915FUL
+#if WAM7_GENERATION != 0x0E2B7B26UL
 #error "wam7.h and wam7_jacobian.c are of different generations: generate the arm again"
 #endif
 
-int wam7_jacobian(
+wam7_status_t wam7_jacobian(
     const wam7_real_t q[WAM7_N_JOINTS],
     wam7_real_t out[6 * WAM7_N_JOINTS])
 {
-    int status = WAM7_STATUS_OK;
+    wam7_status_t status = WAM7_STATUS_OK;
 
     if (!wam7_within_joints(q, WAM7_C(1.0e8))) {
         status |= WAM7_STATUS_INPUT;
@@ -53,26 +53,27 @@ int wam7_jacobian(
     WAM7_SINCOS(q[4], &t17, &t15);
     wam7_real_t t18, t19;
     WAM7_SINCOS(q[5], &t18, &t19);
-    const wam7_real_t t2 = t0 * t1;
-    const wam7_real_t t6 = t3 * t2 + t4 * t5;
-    const wam7_real_t t9 = t0 * t8;
-    const wam7_real_t t11 = t7 * t6 - t10 * t9;
+    const wam7_real_t t2 = t0 * t1; /* link j2: pose */
+    const wam7_real_t t6 = t3 * t2 + t4 * t5; /* link j3: pose */
+    const wam7_real_t t9 = t0 * t8; /* link j2: pose */
+    const wam7_real_t t11 = t7 * t6 - t10 * t9; /* link j4: pose */
     const wam7_real_t t12 = t10 * t6 + t7 * t9;
-    const wam7_real_t t13 = WAM7_C(0.55) * t9;
-    const wam7_real_t t14 = t13 + WAM7_C(0.045) * t6;
-    const wam7_real_t t16 = t4 * t3 - t5 * t2;
-    const wam7_real_t t20 = t18 * (t15 * t11 + t17 * t16) + t19 * t12;
-    const wam7_real_t t21 = WAM7_C(0.06) * t20;
+    const wam7_real_t t13 = WAM7_C(0.55) * t9; /* link j3: pose */
+    const wam7_real_t t14 = t13 + WAM7_C(0.045) * t6; /* link j4: pose */
+    const wam7_real_t t16 = t4 * t3 - t5 * t2; /* link j3: pose */
+    const wam7_real_t t20 = t18 * (t15 * t11 + t17 * t16) + t19 * t12; /* link j6: pose */
+    const wam7_real_t t21 = WAM7_C(0.06) * t20; /* link j7: pose */
     const wam7_real_t t22 = WAM7_C(0.045) * t11 + WAM7_C(-0.3) * t12 - t14 - t21;
     out[0] = t22;
-    const wam7_real_t t23 = t8 * t3;
-    const wam7_real_t t24 = t7 * t23 + t1 * t10;
+    const wam7_real_t t23 = t8 * t3; /* link j3: velocities by those of the joints */
+    const wam7_real_t t24 = t7 * t23 + t1 * t10; /* link j4: velocities by those of the joints */
     const wam7_real_t t25 = t1 * t7 - t10 * t23;
-    const wam7_real_t t26 = WAM7_C(0.55) * t1;
-    const wam7_real_t t27 = t26 + WAM7_C(-0.045) * t23;
-    const wam7_real_t t28 = t8 * t5;
+    const wam7_real_t t26 = WAM7_C(0.55) * t1; /* link j3: pose */
+    const wam7_real_t t27 = t26 + WAM7_C(-0.045) * t23; /* link j4: pose */
+    const wam7_real_t t28 = t8 * t5; /* link j3: velocities by those of the joints */
+    /* link j6: velocities by those of the joints */
     const wam7_real_t t29 = t18 * (t17 * t28 - t15 * t24) + t19 * t25;
-    const wam7_real_t t30 = WAM7_C(0.06) * t29;
+    const wam7_real_t t30 = WAM7_C(0.06) * t29; /* link j7: pose */
     const wam7_real_t t31 = t27 + (WAM7_C(0.045) * t24 + WAM7_C(0.3) * t25) + t30;
     out[1] = t4 * t31;
     const wam7_real_t t32 = t26 - t31;
@@ -82,19 +83,19 @@ int wam7_jacobian(
     const wam7_real_t t35 = t14 + t22;
     out[3] = t28 * t35 - t16 * t34;
     out[4] = t12 * t30 - t25 * t21;
-    const wam7_real_t t36 = t15 * t16 - t17 * t11;
-    const wam7_real_t t37 = t17 * t24 + t15 * t28;
+    const wam7_real_t t36 = t15 * t16 - t17 * t11; /* link j5: pose */
+    const wam7_real_t t37 = t17 * t24 + t15 * t28; /* link j5: velocities by those of the joints */
     out[5] = t36 * t30 - t37 * t21;
-    const wam7_real_t t38 = t4 * t1;
-    const wam7_real_t t39 = t3 * t38 - t0 * t5;
-    const wam7_real_t t40 = t4 * t8;
-    const wam7_real_t t41 = t10 * t40 - t7 * t39;
+    const wam7_real_t t38 = t4 * t1; /* link j2: pose */
+    const wam7_real_t t39 = t3 * t38 - t0 * t5; /* link j3: pose */
+    const wam7_real_t t40 = t4 * t8; /* link j2: pose */
+    const wam7_real_t t41 = t10 * t40 - t7 * t39; /* link j4: pose */
     const wam7_real_t t42 = t10 * t39 + t7 * t40;
-    const wam7_real_t t43 = WAM7_C(0.55) * t40;
-    const wam7_real_t t44 = t43 + WAM7_C(0.045) * t39;
-    const wam7_real_t t45 = t5 * t38 + t0 * t3;
-    const wam7_real_t t46 = t19 * t42 - t18 * (t15 * t41 + t17 * t45);
-    const wam7_real_t t47 = WAM7_C(0.06) * t46;
+    const wam7_real_t t43 = WAM7_C(0.55) * t40; /* link j3: pose */
+    const wam7_real_t t44 = t43 + WAM7_C(0.045) * t39; /* link j4: pose */
+    const wam7_real_t t45 = t5 * t38 + t0 * t3; /* link j3: pose */
+    const wam7_real_t t46 = t19 * t42 - t18 * (t15 * t41 + t17 * t45); /* link j6: pose */
+    const wam7_real_t t47 = WAM7_C(0.06) * t46; /* link j7: pose */
     const wam7_real_t t48 = t44 + (WAM7_C(0.045) * t41 + WAM7_C(0.3) * t42) + t47;
     out[7] = t48;
     out[8] = t0 * t31;
@@ -103,7 +104,7 @@ int wam7_jacobian(
     const wam7_real_t t50 = t48 - t44;
     out[10] = t28 * t50 - t45 * t34;
     out[11] = t25 * t47 - t42 * t30;
-    const wam7_real_t t51 = t17 * t41 - t15 * t45;
+    const wam7_real_t t51 = t17 * t41 - t15 * t45; /* link j5: pose */
     out[12] = t37 * t47 - t51 * t30;
     out[15] = t0 * t22 - t4 * t48;
     out[16] = t9 * t49 - t40 * t33;

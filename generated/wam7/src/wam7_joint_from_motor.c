@@ -27,11 +27,11 @@
  */
 #include "wam7_private.h"
 
-#if WAM7_GENERATION != 0x7A21915FUL
+#if WAM7_GENERATION != 0x0E2B7B26UL
 #error "wam7.h and wam7_joint_from_motor.c are of different generations: generate the arm again"
 #endif
 
-int wam7_joint_from_motor(
+wam7_status_t wam7_joint_from_motor(
     const wam7_real_t q_m[WAM7_N_JOINTS],
     const wam7_real_t dq_m[WAM7_N_JOINTS],
     const wam7_real_t ddq_m[WAM7_N_JOINTS],
@@ -39,7 +39,7 @@ int wam7_joint_from_motor(
     wam7_real_t dq[WAM7_N_JOINTS],
     wam7_real_t ddq[WAM7_N_JOINTS])
 {
-    int status = WAM7_STATUS_OK;
+    wam7_status_t status = WAM7_STATUS_OK;
 
     if (!wam7_within_joints(q_m, WAM7_C(1.0e18))
         || !wam7_within_joints(dq_m, WAM7_C(1.0e18))

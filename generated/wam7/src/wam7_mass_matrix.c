@@ -89,11 +89,11 @@
  */
 #include "wam7_private.h"
 
-#if WAM7_GENERATION != 0x7A21915FUL
+#if WAM7_GENERATION != 0x0E2B7B26UL
 #error "wam7.h and wam7_mass_matrix.c are of different generations: generate the arm again"
 #endif
 
-int wam7_mass_matrix(
+wam7_status_t wam7_mass_matrix(
     const wam7_real_t q[WAM7_N_JOINTS],
     const wam7_real_t parameters[WAM7_N_PARAMETERS],
     wam7_real_t out[WAM7_N_JOINTS * WAM7_N_JOINTS])
@@ -102,7 +102,7 @@ int wam7_mass_matrix(
         XZ4, YZ4, ZZ4R, MX4R, MY4R, XX5R, XY5, XZ5, YZ5, ZZ5R, MX5, MY5R, XX6R, XY6, XZ6, YZ6, ZZ6R, MX6,
         MY6R, XX7R, XY7, XZ7R, YZ7R, ZZ7, MX7, MY7, FV1, FC1, FV2, FC2, FV3, FC3, IA3, FV4, FC4, IA4, FV5,
         FC5, IA5, FV6, FC6, IA6, FV7, FC7, IA7 };
-    int status = WAM7_STATUS_OK;
+    wam7_status_t status = WAM7_STATUS_OK;
 
     if (!wam7_within_joints(q, WAM7_C(1.0e8))
         || !WAM7_PARAMETERS_USABLE(wam7_within(parameters, 62, WAM7_C(1.0e18)))) {
@@ -125,81 +125,99 @@ int wam7_mass_matrix(
     WAM7_SINCOS(q[5], &t8, &t5);
     wam7_real_t t1, t0;
     WAM7_SINCOS(q[6], &t1, &t0);
+    /* link j7: inertia of it and all beyond */
     const wam7_real_t t2 = parameters[XY7] * (WAM7_C(2.0) * t1) - t0 * parameters[XX7R];
     const wam7_real_t t3 = t0 * t2;
     const wam7_real_t t4 = parameters[XX6R] - t3;
+    /* link j7: column of the mass matrix */
     const wam7_real_t t6 = t1 * parameters[YZ7R] - t0 * parameters[XZ7R];
-    const wam7_real_t t7 = parameters[XY6] + t6;
+    const wam7_real_t t7 = parameters[XY6] + t6; /* link j7: inertia of it and all beyond */
+    /* link j6: inertia of it and all beyond */
     const wam7_real_t t9 = t5 * (parameters[ZZ7] - t4) + t7 * (WAM7_C(2.0) * t8);
     const wam7_real_t t10 = t5 * t9;
     const wam7_real_t t11 = parameters[ZZ5R] + (t4 + t10);
+    /* link j7: column of the mass matrix */
     const wam7_real_t t12 = t0 * parameters[MY7] + t1 * parameters[MX7];
-    const wam7_real_t t13 = parameters[MY5R] + t12;
+    const wam7_real_t t13 = parameters[MY5R] + t12; /* link j6: inertia of it and all beyond */
+    /* link j7: column of the mass matrix */
     const wam7_real_t t15 = t1 * parameters[MY7] - t0 * parameters[MX7];
-    const wam7_real_t t16 = t15 - parameters[MX6];
-    const wam7_real_t t17 = t8 * parameters[MY6R] + t5 * t16;
-    const wam7_real_t t18 = t17 - parameters[MX5];
-    const wam7_real_t t20 = t14 * t13 + t19 * t18;
-    const wam7_real_t t21 = WAM7_C(0.09) * t20;
+    const wam7_real_t t16 = t15 - parameters[MX6]; /* link j7: inertia of it and all beyond */
+    const wam7_real_t t17 = t8 * parameters[MY6R] + t5 * t16; /* link j6: column of the mass matrix */
+    const wam7_real_t t18 = t17 - parameters[MX5]; /* link j6: inertia of it and all beyond */
+    const wam7_real_t t20 = t14 * t13 + t19 * t18; /* link j5: column of the mass matrix */
+    const wam7_real_t t21 = WAM7_C(0.09) * t20; /* link j5: inertia of it and all beyond */
     const wam7_real_t t22 = t11 + t21;
+    /* link j6: inertia of it and all beyond */
     const wam7_real_t t23 = parameters[XX5R] + (parameters[ZZ7] - t10);
+    /* link j7: inertia of it and all beyond */
     const wam7_real_t t24 = parameters[ZZ6R] + (parameters[XX7R] + t3);
     const wam7_real_t t25 = t1 * t2 - parameters[XY7] - parameters[XZ6];
+    /* link j7: column of the mass matrix */
     const wam7_real_t t26 = t1 * parameters[XZ7R] + t0 * parameters[YZ7R];
-    const wam7_real_t t27 = parameters[YZ6] - t26;
-    const wam7_real_t t28 = t5 * t25 + t8 * t27;
-    const wam7_real_t t29 = t28 - parameters[XY5];
+    const wam7_real_t t27 = parameters[YZ6] - t26; /* link j7: inertia of it and all beyond */
+    const wam7_real_t t28 = t5 * t25 + t8 * t27; /* link j6: column of the mass matrix */
+    const wam7_real_t t29 = t28 - parameters[XY5]; /* link j6: inertia of it and all beyond */
+    /* link j5: inertia of it and all beyond */
     const wam7_real_t t30 = t19 * (t24 - t23) - t29 * (WAM7_C(2.0) * t14);
     const wam7_real_t t31 = t19 * t30;
-    const wam7_real_t t32 = t8 * t16 - t5 * parameters[MY6R];
-    const wam7_real_t t33 = WAM7_C(0.6) * t32;
+    const wam7_real_t t32 = t8 * t16 - t5 * parameters[MY6R]; /* link j6: column of the mass matrix */
+    const wam7_real_t t33 = WAM7_C(0.6) * t32; /* link j5: inertia of it and all beyond */
     const wam7_real_t t34 = parameters[XX4R] + (t24 - t31 + t33);
-    const wam7_real_t t36 = parameters[XZ5] - (t7 - t8 * t9);
-    const wam7_real_t t37 = t8 * t25 - t5 * t27;
-    const wam7_real_t t38 = parameters[YZ5] + t37;
-    const wam7_real_t t39 = t14 * t38 - t19 * t36;
+    const wam7_real_t t36 = parameters[XZ5] - (t7 - t8 * t9); /* link j6: inertia of it and all beyond */
+    const wam7_real_t t37 = t8 * t25 - t5 * t27; /* link j6: column of the mass matrix */
+    const wam7_real_t t38 = parameters[YZ5] + t37; /* link j6: inertia of it and all beyond */
+    const wam7_real_t t39 = t14 * t38 - t19 * t36; /* link j5: column of the mass matrix */
     const wam7_real_t t40 = WAM7_C(-0.3) * t20;
+    /* link j5: inertia of it and all beyond */
     const wam7_real_t t41 = parameters[XY4R] + (t39 + (t40 + WAM7_C(-0.045) * t32));
+    /* link j4: inertia of it and all beyond */
     const wam7_real_t t43 = t35 * (t22 - t34) + t41 * (WAM7_C(2.0) * t42);
     const wam7_real_t t44 = t35 * t43;
     const wam7_real_t t45 = parameters[XX3R] + (t22 - t44);
+    /* link j5: inertia of it and all beyond */
     const wam7_real_t t46 = parameters[ZZ4R] + (t23 + t31 + (t21 + t33));
     const wam7_real_t t47 = parameters[MX4R] - t20;
     const wam7_real_t t48 = t32 - parameters[MY4R];
-    const wam7_real_t t49 = t42 * t48 + t35 * t47;
-    const wam7_real_t t50 = WAM7_C(0.09) * t49;
+    const wam7_real_t t49 = t42 * t48 + t35 * t47; /* link j4: column of the mass matrix */
+    const wam7_real_t t50 = WAM7_C(0.09) * t49; /* link j4: inertia of it and all beyond */
     const wam7_real_t t51 = t46 + t50;
-    const wam7_real_t t53 = t14 * t18 - t19 * t13;
-    const wam7_real_t t54 = WAM7_C(-0.045) * t53;
+    const wam7_real_t t53 = t14 * t18 - t19 * t13; /* link j5: column of the mass matrix */
+    const wam7_real_t t54 = WAM7_C(-0.045) * t53; /* link j5: inertia of it and all beyond */
     const wam7_real_t t55 = t29 + t14 * t30 - t54 - parameters[XZ4];
+    /* link j5: column of the mass matrix */
     const wam7_real_t t56 = t14 * t36 + t19 * t38 + WAM7_C(0.3) * t53;
-    const wam7_real_t t57 = parameters[YZ4] - t56;
-    const wam7_real_t t58 = t35 * t55 + t42 * t57;
-    const wam7_real_t t59 = t54 + t58 - parameters[XY3R];
+    const wam7_real_t t57 = parameters[YZ4] - t56; /* link j5: inertia of it and all beyond */
+    const wam7_real_t t58 = t35 * t55 + t42 * t57; /* link j4: column of the mass matrix */
+    const wam7_real_t t59 = t54 + t58 - parameters[XY3R]; /* link j4: inertia of it and all beyond */
+    /* link j3: inertia of it and all beyond */
     const wam7_real_t t61 = t52 * (t51 - t45) - t59 * (WAM7_C(2.0) * t60);
     const wam7_real_t t62 = t52 * t61;
-    const wam7_real_t t63 = t35 * t48 - t42 * t47;
-    const wam7_real_t t64 = WAM7_C(1.1) * t63;
+    const wam7_real_t t63 = t35 * t48 - t42 * t47; /* link j4: column of the mass matrix */
+    const wam7_real_t t64 = WAM7_C(1.1) * t63; /* link j3: inertia of it and all beyond */
     const wam7_real_t t65 = parameters[XX2R] + (t51 - t62 + t64);
-    const wam7_real_t t66 = parameters[ZZ3R] + (t34 + t44 + t50);
+    const wam7_real_t t66 = parameters[ZZ3R] + (t34 + t44 + t50); /* link j4: inertia of it and all beyond */
     const wam7_real_t t68 = parameters[XZ3] - (t41 - t42 * t43 - WAM7_C(-0.045) * t63);
-    const wam7_real_t t69 = t42 * t55 - t35 * t57;
-    const wam7_real_t t70 = parameters[YZ3] + t69;
+    const wam7_real_t t69 = t42 * t55 - t35 * t57; /* link j4: column of the mass matrix */
+    const wam7_real_t t70 = parameters[YZ3] + t69; /* link j4: inertia of it and all beyond */
     const wam7_real_t t71 = t53 - parameters[MY3R];
     const wam7_real_t t72 = parameters[MX3R] + t49;
+    /* link j3: column of the mass matrix */
     const wam7_real_t t73 = t60 * t70 - t52 * t68 + WAM7_C(0.55) * (t60 * t71 + t52 * t72);
+    /* link j2: inertia of it and all beyond */
     const wam7_real_t t75 = t67 * (t66 - t65) + (parameters[XY2] + t73) * (WAM7_C(2.0) * t74);
     out[0] = parameters[ZZ1R] + (t65 + t67 * t75);
+    /* link j3: column of the mass matrix */
     const wam7_real_t t76 = t60 * t68 + t52 * t70 + WAM7_C(0.55) * (t52 * t71 - t60 * t72);
+    /* link j2: column of the mass matrix */
     const wam7_real_t t77 = t74 * (t59 + t60 * t61 - parameters[XZ2]) + t67 * (t76 - parameters[YZ2]);
     out[1] = t77;
-    const wam7_real_t t78 = t74 * t73 + t67 * t66;
+    const wam7_real_t t78 = t74 * t73 + t67 * t66; /* link j3: column of the mass matrix */
     out[2] = t78;
-    const wam7_real_t t79 = t46 + WAM7_C(0.045) * t49;
+    const wam7_real_t t79 = t46 + WAM7_C(0.045) * t49; /* link j4: column of the mass matrix */
     const wam7_real_t t80 = t52 * t58 + t60 * t79 + WAM7_C(0.55) * (t60 * t63);
     const wam7_real_t t81 = t74 * t80 + t67 * t69;
     out[3] = t81;
-    const wam7_real_t t82 = t39 + t40;
+    const wam7_real_t t82 = t39 + t40; /* link j5: column of the mass matrix */
     const wam7_real_t t83 = WAM7_C(0.045) * t20;
     const wam7_real_t t84 = t11 + t83;
     const wam7_real_t t85 = t42 * t84 - t35 * t82;
@@ -209,7 +227,7 @@ int wam7_mass_matrix(
     const wam7_real_t t89 = t42 * t82 + t35 * t84 - t83;
     const wam7_real_t t90 = t74 * t88 + t67 * t89;
     out[4] = t90;
-    const wam7_real_t t91 = t14 * t32;
+    const wam7_real_t t91 = t14 * t32; /* link j6: column of the mass matrix */
     const wam7_real_t t92 = t19 * t28 + t14 * t24 + WAM7_C(0.3) * t91;
     const wam7_real_t t93 = WAM7_C(-0.045) * t91;
     const wam7_real_t t94 = t37 + t93;
@@ -222,7 +240,7 @@ int wam7_mass_matrix(
     const wam7_real_t t101 = t42 * t92 + t35 * t94 - t93;
     const wam7_real_t t102 = t74 * t100 + t67 * t101;
     out[5] = t102;
-    const wam7_real_t t103 = t8 * parameters[ZZ7] - t5 * t6;
+    const wam7_real_t t103 = t8 * parameters[ZZ7] - t5 * t6; /* link j7: column of the mass matrix */
     const wam7_real_t t104 = t5 * t12;
     const wam7_real_t t105 = t14 * t104 + t19 * t15;
     const wam7_real_t t106 = t14 * t26 - t19 * t103 + WAM7_C(-0.3) * t105;
@@ -242,12 +260,16 @@ int wam7_mass_matrix(
     out[7] = t77;
     out[8] = parameters[ZZ2R] + (t45 + t62 + t64);
     out[9] = t76;
+    /* link j4: column of the mass matrix */
     const wam7_real_t t119 = t52 * t79 - t60 * t58 + WAM7_C(0.55) * (t52 * t63);
     out[10] = t119;
+    /* link j5: column of the mass matrix */
     const wam7_real_t t120 = t60 * t85 + t52 * t86 + WAM7_C(0.55) * (t52 * t87 + t60 * t20);
     out[11] = t120;
+    /* link j6: column of the mass matrix */
     const wam7_real_t t121 = t60 * t95 + t52 * t98 + WAM7_C(0.55) * (t52 * t99 - t60 * t91);
     out[12] = t121;
+    /* link j7: column of the mass matrix */
     const wam7_real_t t122 = t60 * t110 + t52 * t114 + WAM7_C(0.55) * (t52 * t115 + t60 * t105);
     out[13] = t122;
     out[14] = t78;

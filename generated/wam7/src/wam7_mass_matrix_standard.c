@@ -118,11 +118,11 @@
  */
 #include "wam7_private.h"
 
-#if WAM7_GENERATION != 0x7A21915FUL
+#if WAM7_GENERATION != 0x0E2B7B26UL
 #error "wam7.h and wam7_mass_matrix_standard.c are of different generations: generate the arm again"
 #endif
 
-int wam7_mass_matrix_standard(
+wam7_status_t wam7_mass_matrix_standard(
     const wam7_real_t q[WAM7_N_JOINTS],
     const wam7_real_t parameters[WAM7_N_STANDARD_PARAMETERS],
     wam7_real_t out[WAM7_N_JOINTS * WAM7_N_JOINTS])
@@ -132,7 +132,7 @@ int wam7_mass_matrix_standard(
         XX5, XY5, XZ5, YY5, YZ5, ZZ5, MX5, MY5, MZ5, M5, XX6, XY6, XZ6, YY6, YZ6, ZZ6, MX6, MY6, MZ6, M6, XX7,
         XY7, XZ7, YY7, YZ7, ZZ7, MX7, MY7, MZ7, M7, FV1, FC1, IA1, FV2, FC2, IA2, FV3, FC3, IA3, FV4, FC4,
         IA4, FV5, FC5, IA5, FV6, FC6, IA6, FV7, FC7, IA7 };
-    int status = WAM7_STATUS_OK;
+    wam7_status_t status = WAM7_STATUS_OK;
 
     if (!wam7_within_joints(q, WAM7_C(1.0e8))
         || !WAM7_PARAMETERS_USABLE(wam7_within(parameters, 91, WAM7_C(1.0e18)))) {
@@ -155,94 +155,111 @@ int wam7_mass_matrix_standard(
     WAM7_SINCOS(q[5], &t12, &t8);
     wam7_real_t t1, t0;
     WAM7_SINCOS(q[6], &t1, &t0);
+    /* link j7: inertia of it and all beyond */
     const wam7_real_t t2 = t0 * (parameters[YY7] - parameters[XX7]) + parameters[XY7] * (WAM7_C(2.0) * t1);
     const wam7_real_t t3 = t0 * t2;
     const wam7_real_t t4 = WAM7_C(0.06) * parameters[M7];
     const wam7_real_t t5 = WAM7_C(0.06) * (t4 + WAM7_C(2.0) * parameters[MZ7]);
     const wam7_real_t t6 = parameters[XX6] + (parameters[YY7] - t3 + t5);
     const wam7_real_t t7 = parameters[YY6] + parameters[ZZ7];
+    /* link j7: column of the mass matrix */
     const wam7_real_t t9 = t1 * parameters[MY7] - t0 * parameters[MX7];
     const wam7_real_t t10 = t1 * parameters[YZ7] - t0 * parameters[XZ7] + WAM7_C(-0.06) * t9;
-    const wam7_real_t t11 = parameters[XY6] + t10;
+    const wam7_real_t t11 = parameters[XY6] + t10; /* link j7: inertia of it and all beyond */
+    /* link j6: inertia of it and all beyond */
     const wam7_real_t t13 = t8 * (t7 - t6) + t11 * (WAM7_C(2.0) * t12);
     const wam7_real_t t14 = t8 * t13;
     const wam7_real_t t15 = parameters[XX5] + (t7 - t14);
+    /* link j7: inertia of it and all beyond */
     const wam7_real_t t16 = parameters[ZZ6] + (parameters[XX7] + t3 + t5);
-    const wam7_real_t t17 = parameters[YY5] + t16;
+    const wam7_real_t t17 = parameters[YY5] + t16; /* link j6: inertia of it and all beyond */
+    /* link j7: column of the mass matrix */
     const wam7_real_t t19 = t0 * parameters[MY7] + t1 * parameters[MX7];
     const wam7_real_t t20 = t1 * parameters[XZ7] + t0 * parameters[YZ7] + WAM7_C(-0.06) * t19;
-    const wam7_real_t t21 = parameters[YZ6] - t20;
+    const wam7_real_t t21 = parameters[YZ6] - t20; /* link j7: inertia of it and all beyond */
     const wam7_real_t t22 = t1 * t2 - parameters[XY7] - parameters[XZ6];
-    const wam7_real_t t23 = t8 * t22 + t12 * t21;
-    const wam7_real_t t24 = t23 - parameters[XY5];
+    const wam7_real_t t23 = t8 * t22 + t12 * t21; /* link j6: column of the mass matrix */
+    const wam7_real_t t24 = t23 - parameters[XY5]; /* link j6: inertia of it and all beyond */
+    /* link j5: inertia of it and all beyond */
     const wam7_real_t t26 = t18 * (t17 - t15) - t24 * (WAM7_C(2.0) * t25);
     const wam7_real_t t27 = t18 * t26;
-    const wam7_real_t t28 = t9 - parameters[MX6];
+    const wam7_real_t t28 = t9 - parameters[MX6]; /* link j7: inertia of it and all beyond */
     const wam7_real_t t29 = parameters[MY6] - (parameters[MZ7] + t4);
-    const wam7_real_t t30 = t12 * t28 - t8 * t29;
-    const wam7_real_t t31 = parameters[MZ5] + t30;
+    const wam7_real_t t30 = t12 * t28 - t8 * t29; /* link j6: column of the mass matrix */
+    const wam7_real_t t31 = parameters[MZ5] + t30; /* link j6: inertia of it and all beyond */
     const wam7_real_t t32 = parameters[M5] + (parameters[M6] + parameters[M7]);
-    const wam7_real_t t33 = WAM7_C(0.3) * t32;
+    const wam7_real_t t33 = WAM7_C(0.3) * t32; /* link j5: inertia of it and all beyond */
     const wam7_real_t t34 = WAM7_C(0.3) * (t33 + WAM7_C(2.0) * t31);
     const wam7_real_t t35 = parameters[XX4] + (t17 - t27 + t34);
-    const wam7_real_t t36 = parameters[ZZ5] + (t6 + t14);
+    const wam7_real_t t36 = parameters[ZZ5] + (t6 + t14); /* link j6: inertia of it and all beyond */
     const wam7_real_t t37 = parameters[MY5] + (parameters[MZ6] + t19);
-    const wam7_real_t t38 = t12 * t29 + t8 * t28;
-    const wam7_real_t t39 = parameters[MX5] - t38;
-    const wam7_real_t t40 = t18 * t39 - t25 * t37;
-    const wam7_real_t t41 = WAM7_C(0.045) * t32;
+    const wam7_real_t t38 = t12 * t29 + t8 * t28; /* link j6: column of the mass matrix */
+    const wam7_real_t t39 = parameters[MX5] - t38; /* link j6: inertia of it and all beyond */
+    const wam7_real_t t40 = t18 * t39 - t25 * t37; /* link j5: column of the mass matrix */
+    const wam7_real_t t41 = WAM7_C(0.045) * t32; /* link j5: inertia of it and all beyond */
     const wam7_real_t t42 = WAM7_C(0.045) * (t41 + WAM7_C(-2.0) * t40);
     const wam7_real_t t43 = parameters[YY4] + (t36 + t42);
-    const wam7_real_t t45 = parameters[XZ5] - (t11 - t12 * t13);
-    const wam7_real_t t46 = t12 * t22 - t8 * t21;
-    const wam7_real_t t47 = parameters[YZ5] + t46;
-    const wam7_real_t t48 = t25 * t47 - t18 * t45;
-    const wam7_real_t t49 = t40 - t41;
+    const wam7_real_t t45 = parameters[XZ5] - (t11 - t12 * t13); /* link j6: inertia of it and all beyond */
+    const wam7_real_t t46 = t12 * t22 - t8 * t21; /* link j6: column of the mass matrix */
+    const wam7_real_t t47 = parameters[YZ5] + t46; /* link j6: inertia of it and all beyond */
+    const wam7_real_t t48 = t25 * t47 - t18 * t45; /* link j5: column of the mass matrix */
+    const wam7_real_t t49 = t40 - t41; /* link j5: inertia of it and all beyond */
     const wam7_real_t t50 = parameters[XY4] + (t48 + (WAM7_C(-0.045) * t31 + WAM7_C(0.3) * t49));
+    /* link j4: inertia of it and all beyond */
     const wam7_real_t t52 = t44 * (t43 - t35) + t50 * (WAM7_C(2.0) * t51);
     const wam7_real_t t53 = t44 * t52;
     const wam7_real_t t54 = parameters[XX3] + (t43 - t53);
+    /* link j5: inertia of it and all beyond */
     const wam7_real_t t55 = parameters[ZZ4] + (t15 + t27 + (t42 + t34));
     const wam7_real_t t56 = parameters[MX4] + t49;
     const wam7_real_t t57 = t31 + t33 - parameters[MY4];
-    const wam7_real_t t58 = t51 * t57 + t44 * t56;
-    const wam7_real_t t59 = parameters[M4] + t32;
-    const wam7_real_t t60 = WAM7_C(0.045) * t59;
+    const wam7_real_t t58 = t51 * t57 + t44 * t56; /* link j4: column of the mass matrix */
+    const wam7_real_t t59 = parameters[M4] + t32; /* link j5: inertia of it and all beyond */
+    const wam7_real_t t60 = WAM7_C(0.045) * t59; /* link j4: inertia of it and all beyond */
     const wam7_real_t t61 = WAM7_C(0.045) * (t60 + WAM7_C(2.0) * t58);
     const wam7_real_t t62 = parameters[YY3] + (t55 + t61);
-    const wam7_real_t t64 = t18 * t37 + t25 * t39;
+    const wam7_real_t t64 = t18 * t37 + t25 * t39; /* link j5: column of the mass matrix */
+    /* link j5: inertia of it and all beyond */
     const wam7_real_t t65 = t24 + t25 * t26 + WAM7_C(-0.045) * t64 - parameters[XZ4];
+    /* link j5: column of the mass matrix */
     const wam7_real_t t66 = t25 * t45 + t18 * t47 + WAM7_C(-0.3) * t64;
-    const wam7_real_t t67 = parameters[YZ4] - t66;
-    const wam7_real_t t68 = t44 * t65 + t51 * t67;
-    const wam7_real_t t69 = parameters[MZ4] + t64;
+    const wam7_real_t t67 = parameters[YZ4] - t66; /* link j5: inertia of it and all beyond */
+    const wam7_real_t t68 = t44 * t65 + t51 * t67; /* link j4: column of the mass matrix */
+    const wam7_real_t t69 = parameters[MZ4] + t64; /* link j5: inertia of it and all beyond */
+    /* link j4: inertia of it and all beyond */
     const wam7_real_t t70 = t68 + WAM7_C(0.045) * t69 - parameters[XY3];
+    /* link j3: inertia of it and all beyond */
     const wam7_real_t t72 = t63 * (t62 - t54) - t70 * (WAM7_C(2.0) * t71);
     const wam7_real_t t73 = t63 * t72;
-    const wam7_real_t t74 = t44 * t57 - t51 * t56;
+    const wam7_real_t t74 = t44 * t57 - t51 * t56; /* link j4: column of the mass matrix */
+    /* link j3: inertia of it and all beyond */
     const wam7_real_t t75 = WAM7_C(0.55) * (WAM7_C(0.55) * (parameters[M3] + t59)
         + WAM7_C(2.0) * (parameters[MZ3] + t74));
     const wam7_real_t t76 = parameters[XX2] + (t62 - t73 + t75);
-    const wam7_real_t t77 = parameters[ZZ3] + (t35 + t53 + t61);
+    const wam7_real_t t77 = parameters[ZZ3] + (t35 + t53 + t61); /* link j4: inertia of it and all beyond */
     const wam7_real_t t79 = parameters[XZ3] - (t50 - t51 * t52 - WAM7_C(-0.045) * t74);
-    const wam7_real_t t80 = t51 * t65 - t44 * t67;
-    const wam7_real_t t81 = parameters[YZ3] + t80;
+    const wam7_real_t t80 = t51 * t65 - t44 * t67; /* link j4: column of the mass matrix */
+    const wam7_real_t t81 = parameters[YZ3] + t80; /* link j4: inertia of it and all beyond */
     const wam7_real_t t82 = parameters[MY3] + t69;
     const wam7_real_t t83 = parameters[MX3] + (t58 + t60);
+    /* link j3: column of the mass matrix */
     const wam7_real_t t84 = t71 * t81 - t63 * t79 + WAM7_C(0.55) * (t63 * t83 - t71 * t82);
+    /* link j2: inertia of it and all beyond */
     const wam7_real_t t86 = t78 * (parameters[YY2] + t77 - t76) + (parameters[XY2]
         + t84) * (WAM7_C(2.0) * t85);
     out[0] = parameters[ZZ1] + (t76 + t78 * t86) + WAM7_C(1764.0) * parameters[IA1];
+    /* link j3: column of the mass matrix */
     const wam7_real_t t87 = t71 * t79 + t63 * t81 + WAM7_C(-0.55) * (t63 * t82 + t71 * t83);
+    /* link j2: column of the mass matrix */
     const wam7_real_t t88 = t85 * (t70 + t71 * t72 - parameters[XZ2]) + t78 * (t87 - parameters[YZ2]);
     out[1] = t88;
-    const wam7_real_t t89 = t85 * t84 + t78 * t77;
+    const wam7_real_t t89 = t85 * t84 + t78 * t77; /* link j3: column of the mass matrix */
     out[2] = t89;
-    const wam7_real_t t90 = t55 + WAM7_C(0.045) * t58;
+    const wam7_real_t t90 = t55 + WAM7_C(0.045) * t58; /* link j4: column of the mass matrix */
     const wam7_real_t t91 = t63 * t68 + t71 * t90 + WAM7_C(0.55) * (t71 * t74);
     const wam7_real_t t92 = t85 * t91 + t78 * t80;
     out[3] = t92;
-    const wam7_real_t t93 = t48 + WAM7_C(0.3) * t40;
+    const wam7_real_t t93 = t48 + WAM7_C(0.3) * t40; /* link j5: column of the mass matrix */
     const wam7_real_t t94 = WAM7_C(-0.045) * t40;
     const wam7_real_t t95 = t36 + t94;
     const wam7_real_t t96 = t51 * t95 - t44 * t93;
@@ -252,7 +269,7 @@ int wam7_mass_matrix_standard(
     const wam7_real_t t100 = t51 * t93 + t44 * t95 - t94;
     const wam7_real_t t101 = t85 * t99 + t78 * t100;
     out[4] = t101;
-    const wam7_real_t t102 = t25 * t30;
+    const wam7_real_t t102 = t25 * t30; /* link j6: column of the mass matrix */
     const wam7_real_t t103 = t18 * t23 + t25 * t16 + WAM7_C(0.3) * t102;
     const wam7_real_t t104 = WAM7_C(-0.045) * t102;
     const wam7_real_t t105 = t46 + t104;
@@ -265,7 +282,7 @@ int wam7_mass_matrix_standard(
     const wam7_real_t t112 = t51 * t103 + t44 * t105 - t104;
     const wam7_real_t t113 = t85 * t111 + t78 * t112;
     out[5] = t113;
-    const wam7_real_t t114 = t12 * parameters[ZZ7] - t8 * t10;
+    const wam7_real_t t114 = t12 * parameters[ZZ7] - t8 * t10; /* link j7: column of the mass matrix */
     const wam7_real_t t115 = t8 * t19;
     const wam7_real_t t116 = t25 * t115 + t18 * t9;
     const wam7_real_t t117 = t25 * t20 - t18 * t114 + WAM7_C(-0.3) * t116;
@@ -285,12 +302,16 @@ int wam7_mass_matrix_standard(
     out[7] = t88;
     out[8] = parameters[ZZ2] + (t54 + t73 + t75) + WAM7_C(798.0625) * parameters[IA2];
     out[9] = t87;
+    /* link j4: column of the mass matrix */
     const wam7_real_t t130 = t63 * t90 - t71 * t68 + WAM7_C(0.55) * (t63 * t74);
     out[10] = t130;
+    /* link j5: column of the mass matrix */
     const wam7_real_t t131 = t71 * t96 + t63 * t97 + WAM7_C(-0.55) * (t63 * t98 + t71 * t40);
     out[11] = t131;
+    /* link j6: column of the mass matrix */
     const wam7_real_t t132 = t71 * t106 + t63 * t109 + WAM7_C(0.55) * (t63 * t110 - t71 * t102);
     out[12] = t132;
+    /* link j7: column of the mass matrix */
     const wam7_real_t t133 = t71 * t121 + t63 * t125 + WAM7_C(0.55) * (t63 * t126 + t71 * t116);
     out[13] = t133;
     out[14] = t89;

@@ -27,11 +27,11 @@
  */
 #include "wam7_private.h"
 
-#if WAM7_GENERATION != 0x7A21915FUL
+#if WAM7_GENERATION != 0x0E2B7B26UL
 #error "wam7.h and wam7_motor_from_joint.c are of different generations: generate the arm again"
 #endif
 
-int wam7_motor_from_joint(
+wam7_status_t wam7_motor_from_joint(
     const wam7_real_t q[WAM7_N_JOINTS],
     const wam7_real_t dq[WAM7_N_JOINTS],
     const wam7_real_t ddq[WAM7_N_JOINTS],
@@ -39,7 +39,7 @@ int wam7_motor_from_joint(
     wam7_real_t dq_m[WAM7_N_JOINTS],
     wam7_real_t ddq_m[WAM7_N_JOINTS])
 {
-    int status = WAM7_STATUS_OK;
+    wam7_status_t status = WAM7_STATUS_OK;
 
     if (!wam7_within_joints(q, WAM7_C(1.0e8))
         || !wam7_within_joints(dq, WAM7_C(1.0e10))

@@ -13,7 +13,7 @@
 
 #include "wam7.h"
 
-#if WAM7_GENERATION != 0x7A21915FUL
+#if WAM7_GENERATION != 0x0E2B7B26UL
 #error "wam7.h and wam7_private.h are of different generations: generate the arm again"
 #endif
 

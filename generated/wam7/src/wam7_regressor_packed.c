@@ -6,7 +6,7 @@
  * Arm wam7, description 552353c9ea1f05cf.
  * SPDX-License-Identifier: 0BSD
  *
- * Operations: 1180 (720 mul, 458 add, 2 neg), 12 trig, 7 other.
+ * Operations: 1180 (720 mul, 458 add, 2 neg), 12 trig, 7 other calls (sign, select and the like).
  *
  * @param[in]   q    [7]    [rad]                          joint coordinates; norm at most 10000
  * @param[in]   dq   [7]    [rad/s]                        joint velocities; norm at most 100000
@@ -34,7 +34,7 @@
  */
 #include "wam7_private.h"
 
-#if WAM7_GENERATION != 0x7A21915FUL
+#if WAM7_GENERATION != 0x0E2B7B26UL
 #error "wam7.h and wam7_regressor_packed.c are of different generations: generate the arm again"
 #endif
 
@@ -58,13 +58,13 @@ const unsigned short wam7_regressor_columns[WAM7_N_PACKED] = {
     37, 38, 39, 40, 41, 42, 56, 57, 58, 36, 37, 38, 39, 40, 41, 42, 59, 60, 61
 };
 
-int wam7_regressor_packed(
+wam7_status_t wam7_regressor_packed(
     const wam7_real_t q[WAM7_N_JOINTS],
     const wam7_real_t dq[WAM7_N_JOINTS],
     const wam7_real_t ddq[WAM7_N_JOINTS],
     wam7_real_t out[WAM7_N_PACKED])
 {
-    int status = WAM7_STATUS_OK;
+    wam7_status_t status = WAM7_STATUS_OK;
 
     if (!wam7_within_joints(q, WAM7_C(1.0e8))
         || !wam7_within_joints(dq, WAM7_C(1.0e10))
@@ -89,20 +89,20 @@ int wam7_regressor_packed(
     wam7_real_t t225, t224;
     WAM7_SINCOS(q[6], &t225, &t224);
     out[0] = WAM7_C(0.05209961446285298) * ddq[0];
-    const wam7_real_t t1 = t0 * dq[0];
+    const wam7_real_t t1 = t0 * dq[0]; /* link j2: motion */
     const wam7_real_t t2 = dq[1] * t1;
     const wam7_real_t t4 = t3 * ddq[0];
     const wam7_real_t t5 = t2 + t4;
-    const wam7_real_t t6 = WAM7_C(0.05209961446285298) * t3;
-    const wam7_real_t t7 = t3 * dq[0];
+    const wam7_real_t t6 = WAM7_C(0.05209961446285298) * t3; /* link j2: velocities by those of the joints */
+    const wam7_real_t t7 = t3 * dq[0]; /* link j2: motion */
     const wam7_real_t t8 = dq[1] * t7;
-    const wam7_real_t t9 = WAM7_C(0.05209961446285298) * t0;
-    const wam7_real_t t10 = t8 * t9;
+    const wam7_real_t t9 = WAM7_C(0.05209961446285298) * t0; /* link j2: velocities by those of the joints */
+    const wam7_real_t t10 = t8 * t9; /* link j2: columns */
     out[1] = t5 * t6 + t10;
-    const wam7_real_t t11 = t7 * t1;
+    const wam7_real_t t11 = t7 * t1; /* link j2: motion */
     out[43] = WAM7_C(-0.07745783389167521) * t11;
-    const wam7_real_t t12 = t2 + t5;
-    const wam7_real_t t13 = t0 * ddq[0];
+    const wam7_real_t t12 = t2 + t5; /* link j3: motion */
+    const wam7_real_t t13 = t0 * ddq[0]; /* link j2: motion */
     const wam7_real_t t14 = t13 - t8;
     out[2] = t12 * t9 + (t14 - t8) * t6;
     const wam7_real_t t15 = t7 * t7;
@@ -111,7 +111,7 @@ int wam7_regressor_packed(
     const wam7_real_t t17 = dq[1] * dq[1];
     out[3] = (t15 - t17) * t9 - (ddq[1] + t11) * t6;
     out[45] = WAM7_C(-0.07745783389167521) * t4;
-    const wam7_real_t t18 = t11 - ddq[1];
+    const wam7_real_t t18 = t11 - ddq[1]; /* link j3: motion */
     out[4] = t18 * t9 + (t17 - t16) * t6;
     out[46] = WAM7_C(-0.07745783389167521) * t13;
     out[5] = t2 * t6 - t10;
@@ -123,40 +123,41 @@ int wam7_regressor_packed(
     const wam7_real_t t23 = dq[2] + t1;
     const wam7_real_t t24 = t22 * t23;
     const wam7_real_t t25 = t24 - t21;
-    const wam7_real_t t26 = t20 * t6;
-    const wam7_real_t t27 = t19 * dq[1] - t20 * t7;
+    const wam7_real_t t26 = t20 * t6; /* link j3: velocities by those of the joints */
+    const wam7_real_t t27 = t19 * dq[1] - t20 * t7; /* link j3: motion */
     const wam7_real_t t28 = t27 * t22;
     const wam7_real_t t29 = t27 * t23;
-    const wam7_real_t t30 = t19 * t6;
-    const wam7_real_t t31 = t29 * t30;
+    const wam7_real_t t30 = t19 * t6; /* link j3: velocities by those of the joints */
+    const wam7_real_t t31 = t29 * t30; /* link j3: columns */
     out[6] = t31 - t28 * t9 - t25 * t26;
+    /* link j3: velocities by those of the joints */
     const wam7_real_t t32 = WAM7_C(0.07745783389167521) * t19;
     const wam7_real_t t33 = WAM7_C(0.07745783389167521) * t20;
-    const wam7_real_t t34 = t29 * t33;
+    const wam7_real_t t34 = t29 * t33; /* link j3: columns */
     out[50] = t25 * t32 + t34;
     out[87] = WAM7_C(-0.07745783389167521) * t28;
-    const wam7_real_t t35 = t24 + t25;
-    const wam7_real_t t36 = t20 * t18 - t19 * t12;
+    const wam7_real_t t35 = t24 + t25; /* link j4: motion */
+    const wam7_real_t t36 = t20 * t18 - t19 * t12; /* link j3: motion */
     const wam7_real_t t37 = t29 + t36;
-    const wam7_real_t t38 = t29 + t37;
-    const wam7_real_t t39 = t27 * t27;
+    const wam7_real_t t38 = t29 + t37; /* link j4: motion */
+    const wam7_real_t t39 = t27 * t27; /* link j3: motion */
     const wam7_real_t t40 = t22 * t22;
-    const wam7_real_t t41 = t39 - t40;
+    const wam7_real_t t41 = t39 - t40; /* link j3: force and moment */
     out[7] = t35 * t30 + t38 * t26 + t41 * t9;
     out[51] = t35 * t33 - t38 * t32;
     out[88] = WAM7_C(0.07745783389167521) * t41;
-    const wam7_real_t t42 = ddq[2] + t14;
-    const wam7_real_t t43 = t28 + t42;
-    const wam7_real_t t44 = t23 * t23;
-    const wam7_real_t t45 = t44 - t39;
-    const wam7_real_t t46 = t45 * t30 - (t43 * t26 + t21 * t9);
+    const wam7_real_t t42 = ddq[2] + t14; /* link j3: motion */
+    const wam7_real_t t43 = t28 + t42; /* link j4: motion */
+    const wam7_real_t t44 = t23 * t23; /* link j3: motion */
+    const wam7_real_t t45 = t44 - t39; /* link j3: force and moment */
+    const wam7_real_t t46 = t45 * t30 - (t43 * t26 + t21 * t9); /* link j3: columns */
     out[8] = t46;
     const wam7_real_t t47 = t43 * t32 + t45 * t33;
     out[52] = t47;
     out[89] = WAM7_C(-0.07745783389167521) * t21;
-    const wam7_real_t t48 = t42 - t28;
-    const wam7_real_t t49 = t40 - t44;
-    const wam7_real_t t50 = t48 * t30 - t36 * t9 - t49 * t26;
+    const wam7_real_t t48 = t42 - t28; /* link j4: motion */
+    const wam7_real_t t49 = t40 - t44; /* link j3: force and moment */
+    const wam7_real_t t50 = t48 * t30 - t36 * t9 - t49 * t26; /* link j3: columns */
     out[9] = t50;
     const wam7_real_t t51 = t48 * t33 + t49 * t32;
     out[53] = t51;
@@ -164,9 +165,9 @@ int wam7_regressor_packed(
     out[10] = t42 * t9 - (t31 + t24 * t26);
     out[54] = t24 * t32 - t34;
     out[91] = WAM7_C(0.07745783389167521) * t42;
-    const wam7_real_t t52 = WAM7_C(-9.81) * t0;
+    const wam7_real_t t52 = WAM7_C(-9.81) * t0; /* link j2: motion */
     const wam7_real_t t53 = WAM7_C(9.81) * t3;
-    const wam7_real_t t54 = t19 * t53;
+    const wam7_real_t t54 = t19 * t53; /* link j3: motion */
     out[11] = t52 * t30 + t54 * t9 + WAM7_C(-0.55) * t46;
     out[55] = t52 * t33 + WAM7_C(-0.55) * t47;
     out[92] = WAM7_C(0.07745783389167521) * t54 + WAM7_C(0.04260180864042137) * t21;
@@ -174,48 +175,49 @@ int wam7_regressor_packed(
     out[12] = t52 * t26 + t55 * t9 + WAM7_C(-0.55) * t50;
     out[56] = WAM7_C(-0.55) * t51 - t52 * t32;
     out[93] = WAM7_C(0.07745783389167521) * t55 + WAM7_C(0.04260180864042137) * t36;
-    const wam7_real_t t58 = t57 * t35 - t56 * t48;
+    const wam7_real_t t58 = t57 * t35 - t56 * t48; /* link j4: motion */
     const wam7_real_t t59 = t56 * t27 + t57 * t23;
     const wam7_real_t t60 = dq[3] + t22;
     const wam7_real_t t61 = t59 * t60;
     const wam7_real_t t62 = t61 - t58;
-    const wam7_real_t t63 = t57 * t26 + t56 * t9;
-    const wam7_real_t t64 = t56 * t23 - t57 * t27;
+    const wam7_real_t t63 = t57 * t26 + t56 * t9; /* link j4: velocities by those of the joints */
+    const wam7_real_t t64 = t56 * t23 - t57 * t27; /* link j4: motion */
     const wam7_real_t t65 = t64 * t60;
-    const wam7_real_t t66 = t57 * t9 - t56 * t26;
-    const wam7_real_t t67 = t65 * t66;
-    const wam7_real_t t68 = t64 * t59;
+    const wam7_real_t t66 = t57 * t9 - t56 * t26; /* link j4: velocities by those of the joints */
+    const wam7_real_t t67 = t65 * t66; /* link j4: columns */
+    const wam7_real_t t68 = t64 * t59; /* link j4: motion */
     out[13] = t62 * t63 + (t67 - t68 * t30);
-    const wam7_real_t t69 = t57 * t32;
+    const wam7_real_t t69 = t57 * t32; /* link j4: velocities by those of the joints */
     const wam7_real_t t70 = t56 * t32;
-    const wam7_real_t t71 = t65 * t70;
+    const wam7_real_t t71 = t65 * t70; /* link j4: columns */
     out[57] = t71 - t68 * t33 - t62 * t69;
+    /* link j4: velocities by those of the joints */
     const wam7_real_t t72 = WAM7_C(0.07745783389167521) * t56;
     const wam7_real_t t73 = WAM7_C(0.07745783389167521) * t57;
-    const wam7_real_t t74 = t65 * t73;
+    const wam7_real_t t74 = t65 * t73; /* link j4: columns */
     out[94] = t62 * t72 + t74;
     out[125] = WAM7_C(-0.12156576707999026) * t68;
-    const wam7_real_t t75 = t61 + t62;
-    const wam7_real_t t76 = t57 * t48 + t56 * t35;
+    const wam7_real_t t75 = t61 + t62; /* link j5: motion */
+    const wam7_real_t t76 = t57 * t48 + t56 * t35; /* link j4: motion */
     const wam7_real_t t77 = t76 - t65;
-    const wam7_real_t t78 = t77 - t65;
-    const wam7_real_t t79 = t64 * t64;
+    const wam7_real_t t78 = t77 - t65; /* link j5: motion */
+    const wam7_real_t t79 = t64 * t64; /* link j4: motion */
     const wam7_real_t t80 = t59 * t59;
-    const wam7_real_t t81 = t79 - t80;
+    const wam7_real_t t81 = t79 - t80; /* link j4: force and moment */
     out[14] = t75 * t66 + t78 * t63 + t81 * t30;
     out[58] = t75 * t70 - t78 * t69 + t81 * t33;
     out[95] = t75 * t73 + t78 * t72;
     out[126] = WAM7_C(0.12156576707999026) * t81;
-    const wam7_real_t t82 = ddq[3] - t37;
-    const wam7_real_t t83 = t68 + t82;
-    const wam7_real_t t84 = t60 * t60;
-    const wam7_real_t t85 = t79 - t84;
+    const wam7_real_t t82 = ddq[3] - t37; /* link j4: motion */
+    const wam7_real_t t83 = t68 + t82; /* link j5: motion */
+    const wam7_real_t t84 = t60 * t60; /* link j4: motion */
+    const wam7_real_t t85 = t79 - t84; /* link j4: force and moment */
     out[15] = t58 * t30 - t83 * t63 + t85 * t66;
     out[59] = t83 * t69 + t58 * t33 + t85 * t70;
     out[96] = t85 * t73 - t83 * t72;
     out[127] = WAM7_C(0.12156576707999026) * t58;
-    const wam7_real_t t86 = t68 - t82;
-    const wam7_real_t t87 = t84 - t80;
+    const wam7_real_t t86 = t68 - t82; /* link j5: motion */
+    const wam7_real_t t87 = t84 - t80; /* link j4: force and moment */
     out[16] = t86 * t66 - t76 * t30 + t87 * t63;
     out[60] = t86 * t70 - t76 * t33 - t87 * t69;
     out[97] = t86 * t73 + t87 * t72;
@@ -224,85 +226,92 @@ int wam7_regressor_packed(
     out[61] = t82 * t33 - (t71 + t61 * t69);
     out[98] = t61 * t72 - t74;
     out[129] = WAM7_C(0.12156576707999026) * t82;
-    const wam7_real_t t88 = t80 + t84;
+    const wam7_real_t t88 = t80 + t84; /* link j5: motion */
+    /* link j3: velocities by those of the joints */
     const wam7_real_t t89 = WAM7_C(-0.02865478795456914) * t3;
     const wam7_real_t t90 = t19 * t89;
-    const wam7_real_t t91 = WAM7_C(0.045) * t30;
+    const wam7_real_t t91 = WAM7_C(0.045) * t30; /* link j4: velocities by those of the joints */
     const wam7_real_t t92 = t57 * t90 - t56 * t91;
     const wam7_real_t t93 = t56 * t90 + t57 * t91;
     const wam7_real_t t94 = t20 * t89 + WAM7_C(-0.002344482650828384) * t0;
-    const wam7_real_t t95 = t53 + WAM7_C(0.55) * t18;
+    const wam7_real_t t95 = t53 + WAM7_C(0.55) * t18; /* link j3: motion */
     const wam7_real_t t96 = WAM7_C(-0.55) * t12;
-    const wam7_real_t t97 = t19 * t95 - t20 * t96 - WAM7_C(-0.045) * t43;
+    const wam7_real_t t97 = t19 * t95 - t20 * t96 - WAM7_C(-0.045) * t43; /* link j4: motion */
     const wam7_real_t t98 = WAM7_C(0.045) * (t40 + t44) + (t20 * t95 + t19 * t96);
     const wam7_real_t t99 = t52 + WAM7_C(0.55) * (t17 + t15) + WAM7_C(-0.045) * t38;
     const wam7_real_t t100 = t56 * t98 + t57 * t99;
+    /* link j4: columns */
     const wam7_real_t t101 = t88 * t92 + t83 * t93 - t78 * t94 + (t97 * t66 + t100 * t30);
     out[18] = t101;
+    /* link j4: velocities by those of the joints */
     const wam7_real_t t102 = t20 * (WAM7_C(-0.04260180864042137) * t57 + WAM7_C(-0.003485602525125384) * t56);
     const wam7_real_t t103 = WAM7_C(0.003485602525125384) * t57;
     const wam7_real_t t104 = t20 * (WAM7_C(0.04260180864042137) * t56 - t103);
+    /* link j3: velocities by those of the joints */
     const wam7_real_t t105 = WAM7_C(0.04260180864042137) * t19;
+    /* link j4: columns */
     const wam7_real_t t106 = t88 * t102 - t83 * t104 - t78 * t105 + (t97 * t70 + t100 * t33);
     out[62] = t106;
     out[99] = WAM7_C(0.003485602525125384) * t78 + t97 * t73;
     out[130] = WAM7_C(0.12156576707999026) * t100;
-    const wam7_real_t t107 = t79 + t84;
-    const wam7_real_t t108 = t57 * t98 - t56 * t99;
+    const wam7_real_t t107 = t79 + t84; /* link j5: motion */
+    const wam7_real_t t108 = t57 * t98 - t56 * t99; /* link j4: motion */
+    /* link j4: columns */
     const wam7_real_t t109 = t75 * t94 - (t86 * t92 + t107 * t93) + (t108 * t30 - t97 * t63);
     out[19] = t109;
     const wam7_real_t t110 = t107 * t104 - t86 * t102 + t75 * t105 + (t97 * t69 + t108 * t33);
     out[63] = t110;
     out[100] = WAM7_C(-0.003485602525125384) * t75 - t97 * t72;
     out[131] = WAM7_C(0.12156576707999026) * t108;
-    const wam7_real_t t113 = t111 * t86 + t112 * t75;
+    const wam7_real_t t113 = t111 * t86 + t112 * t75; /* link j5: motion */
     const wam7_real_t t114 = t111 * t64 + t112 * t60;
     const wam7_real_t t115 = dq[4] + t59;
     const wam7_real_t t116 = t114 * t115;
     const wam7_real_t t117 = t116 - t113;
-    const wam7_real_t t118 = t111 * t30 - t112 * t63;
-    const wam7_real_t t119 = t111 * t60 - t112 * t64;
+    const wam7_real_t t118 = t111 * t30 - t112 * t63; /* link j5: velocities by those of the joints */
+    const wam7_real_t t119 = t111 * t60 - t112 * t64; /* link j5: motion */
     const wam7_real_t t120 = t119 * t114;
     const wam7_real_t t121 = t119 * t115;
-    const wam7_real_t t122 = t111 * t63 + t112 * t30;
-    const wam7_real_t t123 = t121 * t122;
+    const wam7_real_t t122 = t111 * t63 + t112 * t30; /* link j5: velocities by those of the joints */
+    const wam7_real_t t123 = t121 * t122; /* link j5: columns */
     out[20] = t117 * t118 + (t123 - t120 * t66);
-    const wam7_real_t t124 = t112 * t69 + t111 * t33;
+    const wam7_real_t t124 = t112 * t69 + t111 * t33; /* link j5: velocities by those of the joints */
     const wam7_real_t t125 = t112 * t33 - t111 * t69;
-    const wam7_real_t t126 = t121 * t125;
+    const wam7_real_t t126 = t121 * t125; /* link j5: columns */
     out[64] = t117 * t124 + (t126 - t120 * t70);
-    const wam7_real_t t127 = t112 * t72;
+    const wam7_real_t t127 = t112 * t72; /* link j5: velocities by those of the joints */
     const wam7_real_t t128 = t111 * t72;
-    const wam7_real_t t129 = t121 * t128;
+    const wam7_real_t t129 = t121 * t128; /* link j5: columns */
     out[101] = t129 - t120 * t73 - t117 * t127;
+    /* link j5: velocities by those of the joints */
     const wam7_real_t t130 = WAM7_C(0.12156576707999026) * t111;
     const wam7_real_t t131 = WAM7_C(0.12156576707999026) * t112;
-    const wam7_real_t t132 = t121 * t131;
+    const wam7_real_t t132 = t121 * t131; /* link j5: columns */
     out[132] = t117 * t130 + t132;
     out[156] = WAM7_C(-0.4469713223199599) * t120;
-    const wam7_real_t t133 = t116 + t117;
-    const wam7_real_t t134 = t111 * t75 - t112 * t86;
+    const wam7_real_t t133 = t116 + t117; /* link j6: motion */
+    const wam7_real_t t134 = t111 * t75 - t112 * t86; /* link j5: motion */
     const wam7_real_t t135 = t134 - t121;
-    const wam7_real_t t136 = t121 - t135;
-    const wam7_real_t t137 = t119 * t119;
+    const wam7_real_t t136 = t121 - t135; /* link j6: motion */
+    const wam7_real_t t137 = t119 * t119; /* link j5: motion */
     const wam7_real_t t138 = t114 * t114;
-    const wam7_real_t t139 = t137 - t138;
+    const wam7_real_t t139 = t137 - t138; /* link j5: force and moment */
     out[21] = t133 * t122 - t136 * t118 + t139 * t66;
     out[65] = t133 * t125 - t136 * t124 + t139 * t70;
     out[102] = t133 * t128 + t136 * t127 + t139 * t73;
     out[133] = t133 * t131 - t136 * t130;
     out[157] = WAM7_C(0.4469713223199599) * t139;
-    const wam7_real_t t140 = ddq[4] + t77;
-    const wam7_real_t t141 = t120 + t140;
-    const wam7_real_t t142 = t115 * t115;
-    const wam7_real_t t143 = t142 - t137;
+    const wam7_real_t t140 = ddq[4] + t77; /* link j5: motion */
+    const wam7_real_t t141 = t120 + t140; /* link j6: motion */
+    const wam7_real_t t142 = t115 * t115; /* link j5: motion */
+    const wam7_real_t t143 = t142 - t137; /* link j5: force and moment */
     out[22] = t141 * t118 - t113 * t66 + t143 * t122;
     out[66] = t141 * t124 - t113 * t70 + t143 * t125;
     out[103] = t143 * t128 - (t141 * t127 + t113 * t73);
     out[134] = t141 * t130 + t143 * t131;
     out[158] = WAM7_C(-0.4469713223199599) * t113;
-    const wam7_real_t t144 = t120 - t140;
-    const wam7_real_t t145 = t138 - t142;
+    const wam7_real_t t144 = t120 - t140; /* link j6: motion */
+    const wam7_real_t t145 = t138 - t142; /* link j5: force and moment */
     out[23] = t134 * t66 - t144 * t122 + t145 * t118;
     out[67] = t134 * t70 - t144 * t125 + t145 * t124;
     out[104] = t134 * t73 - t144 * t128 - t145 * t127;
@@ -313,30 +322,35 @@ int wam7_regressor_packed(
     out[105] = t140 * t73 - (t129 + t116 * t127);
     out[136] = t116 * t130 - t132;
     out[160] = WAM7_C(0.4469713223199599) * t140;
-    const wam7_real_t t146 = t108 + (WAM7_C(-0.045) * t88 + WAM7_C(0.3) * t86);
+    const wam7_real_t t146 = t108 + (WAM7_C(-0.045) * t88 + WAM7_C(0.3) * t86); /* link j5: motion */
     const wam7_real_t t147 = t97 + (WAM7_C(-0.045) * t78 - WAM7_C(-0.3) * t75);
     const wam7_real_t t148 = t111 * t146 + t112 * t147;
     const wam7_real_t t149 = t100 + (WAM7_C(0.3) * t107 + WAM7_C(-0.045) * t83);
-    const wam7_real_t t150 = t91 - t93;
-    const wam7_real_t t151 = t138 + t142;
-    const wam7_real_t t152 = t111 * t141 + t112 * t151;
-    const wam7_real_t t153 = WAM7_C(0.3) * t30 - t92;
-    const wam7_real_t t154 = t112 * t141 - t111 * t151;
+    const wam7_real_t t150 = t91 - t93; /* link j5: velocities by those of the joints */
+    const wam7_real_t t151 = t138 + t142; /* link j6: motion */
+    const wam7_real_t t152 = t111 * t141 + t112 * t151; /* link j5: columns */
+    const wam7_real_t t153 = WAM7_C(0.3) * t30 - t92; /* link j5: velocities by those of the joints */
+    const wam7_real_t t154 = t112 * t141 - t111 * t151; /* link j5: columns */
+    /* link j5: velocities by those of the joints */
     const wam7_real_t t155 = t94 + (WAM7_C(-0.3) * t63 + WAM7_C(0.045) * t66);
+    /* link j5: columns */
     const wam7_real_t t156 = t149 * t122 + t148 * t66 + (t136 * t150 - t152 * t153 - t154 * t155);
     out[25] = t156;
+    /* link j5: velocities by those of the joints */
     const wam7_real_t t157 = WAM7_C(0.003485602525125384) * t20 + t104;
     const wam7_real_t t158 = WAM7_C(0.02323735016750256) * t20 - t102;
     const wam7_real_t t159 = t105 + (WAM7_C(0.3) * t69 + WAM7_C(0.045) * t70);
+    /* link j5: columns */
     const wam7_real_t t160 = t149 * t125 + t148 * t70 + (t136 * t157 - t152 * t158 - t154 * t159);
     out[69] = t160;
+    /* link j5: velocities by those of the joints */
     const wam7_real_t t161 = t103 + WAM7_C(-0.02323735016750256) * t56 - WAM7_C(0.003485602525125384);
     out[106] = t149 * t128 + t148 * t73 - t154 * t161;
     out[137] = t149 * t131 + (WAM7_C(0.005470459518599561) * t136 + WAM7_C(-0.036469730123997075) * t152);
     out[161] = WAM7_C(0.4469713223199599) * t148;
-    const wam7_real_t t162 = t112 * t146 - t111 * t147;
-    const wam7_real_t t163 = t137 + t142;
-    const wam7_real_t t164 = t112 * t144 + t111 * t163;
+    const wam7_real_t t162 = t112 * t146 - t111 * t147; /* link j5: motion */
+    const wam7_real_t t163 = t137 + t142; /* link j6: motion */
+    const wam7_real_t t164 = t112 * t144 + t111 * t163; /* link j5: columns */
     const wam7_real_t t165 = t111 * t144 - t112 * t163;
     const wam7_real_t t166 = t162 * t66 - t149 * t118 + (t133 * t150 + t164 * t153 - t165 * t155);
     out[26] = t166;
@@ -345,60 +359,61 @@ int wam7_regressor_packed(
     out[107] = t149 * t127 + t162 * t73 - t165 * t161;
     out[138] = WAM7_C(0.005470459518599561) * t133 + WAM7_C(0.036469730123997075) * t164 - t149 * t130;
     out[162] = WAM7_C(0.4469713223199599) * t162;
-    const wam7_real_t t170 = t168 * t144 + t169 * t133;
+    const wam7_real_t t170 = t168 * t144 + t169 * t133; /* link j6: motion */
     const wam7_real_t t171 = t168 * t119 + t169 * t115;
     const wam7_real_t t172 = dq[5] + t114;
     const wam7_real_t t173 = t171 * t172;
     const wam7_real_t t174 = t173 - t170;
-    const wam7_real_t t175 = t169 * t118 - t168 * t66;
-    const wam7_real_t t176 = t168 * t115 - t169 * t119;
+    const wam7_real_t t175 = t169 * t118 - t168 * t66; /* link j6: velocities by those of the joints */
+    const wam7_real_t t176 = t168 * t115 - t169 * t119; /* link j6: motion */
     const wam7_real_t t177 = t176 * t172;
-    const wam7_real_t t178 = t168 * t118 + t169 * t66;
-    const wam7_real_t t179 = t177 * t178;
-    const wam7_real_t t180 = t176 * t171;
+    const wam7_real_t t178 = t168 * t118 + t169 * t66; /* link j6: velocities by those of the joints */
+    const wam7_real_t t179 = t177 * t178; /* link j6: columns */
+    const wam7_real_t t180 = t176 * t171; /* link j6: motion */
     out[27] = t179 - t180 * t122 - t174 * t175;
-    const wam7_real_t t181 = t169 * t124 - t168 * t70;
+    const wam7_real_t t181 = t169 * t124 - t168 * t70; /* link j6: velocities by those of the joints */
     const wam7_real_t t182 = t168 * t124 + t169 * t70;
-    const wam7_real_t t183 = t177 * t182;
+    const wam7_real_t t183 = t177 * t182; /* link j6: columns */
     out[71] = t183 - t180 * t125 - t174 * t181;
-    const wam7_real_t t184 = t169 * t127 + t168 * t73;
+    const wam7_real_t t184 = t169 * t127 + t168 * t73; /* link j6: velocities by those of the joints */
     const wam7_real_t t185 = t169 * t73 - t168 * t127;
-    const wam7_real_t t186 = t177 * t185;
+    const wam7_real_t t186 = t177 * t185; /* link j6: columns */
     out[108] = t174 * t184 + (t186 - t180 * t128);
-    const wam7_real_t t187 = t169 * t130;
+    const wam7_real_t t187 = t169 * t130; /* link j6: velocities by those of the joints */
     const wam7_real_t t188 = t168 * t130;
-    const wam7_real_t t189 = t177 * t188;
+    const wam7_real_t t189 = t177 * t188; /* link j6: columns */
     out[139] = t189 - t180 * t131 - t174 * t187;
+    /* link j6: velocities by those of the joints */
     const wam7_real_t t190 = WAM7_C(0.4469713223199599) * t168;
     const wam7_real_t t191 = WAM7_C(0.4469713223199599) * t169;
-    const wam7_real_t t192 = t177 * t191;
+    const wam7_real_t t192 = t177 * t191; /* link j6: columns */
     out[163] = t174 * t190 + t192;
     out[180] = WAM7_C(-0.4469713223199599) * t180;
-    const wam7_real_t t193 = t173 + t174;
-    const wam7_real_t t194 = t169 * t144 - t168 * t133;
+    const wam7_real_t t193 = t173 + t174; /* link j7: motion */
+    const wam7_real_t t194 = t169 * t144 - t168 * t133; /* link j6: motion */
     const wam7_real_t t195 = t177 + t194;
-    const wam7_real_t t196 = t177 + t195;
-    const wam7_real_t t197 = t176 * t176;
+    const wam7_real_t t196 = t177 + t195; /* link j7: motion */
+    const wam7_real_t t197 = t176 * t176; /* link j6: motion */
     const wam7_real_t t198 = t171 * t171;
-    const wam7_real_t t199 = t197 - t198;
+    const wam7_real_t t199 = t197 - t198; /* link j6: force and moment */
     out[28] = t193 * t178 + t196 * t175 + t199 * t122;
     out[72] = t193 * t182 + t196 * t181 + t199 * t125;
     out[109] = t193 * t185 - t196 * t184 + t199 * t128;
     out[140] = t193 * t188 + t196 * t187 + t199 * t131;
     out[164] = t193 * t191 - t196 * t190;
     out[181] = WAM7_C(0.4469713223199599) * t199;
-    const wam7_real_t t200 = ddq[5] + t135;
-    const wam7_real_t t201 = t180 + t200;
-    const wam7_real_t t202 = t172 * t172;
-    const wam7_real_t t203 = t197 - t202;
+    const wam7_real_t t200 = ddq[5] + t135; /* link j6: motion */
+    const wam7_real_t t201 = t180 + t200; /* link j7: motion */
+    const wam7_real_t t202 = t172 * t172; /* link j6: motion */
+    const wam7_real_t t203 = t197 - t202; /* link j6: force and moment */
     out[29] = t201 * t175 + t170 * t122 + t203 * t178;
     out[73] = t201 * t181 + t170 * t125 + t203 * t182;
     out[110] = t170 * t128 - t201 * t184 + t203 * t185;
     out[141] = t201 * t187 + t170 * t131 + t203 * t188;
     out[165] = t203 * t191 - t201 * t190;
     out[182] = WAM7_C(0.4469713223199599) * t170;
-    const wam7_real_t t204 = t200 - t180;
-    const wam7_real_t t205 = t202 - t198;
+    const wam7_real_t t204 = t200 - t180; /* link j7: motion */
+    const wam7_real_t t205 = t202 - t198; /* link j6: force and moment */
     out[30] = t194 * t122 - t204 * t178 - t205 * t175;
     out[74] = t194 * t125 - t204 * t182 - t205 * t181;
     out[111] = t205 * t184 - (t204 * t185 - t194 * t128);
@@ -411,12 +426,13 @@ int wam7_regressor_packed(
     out[143] = t200 * t131 - (t189 + t173 * t187);
     out[167] = t173 * t190 - t192;
     out[184] = WAM7_C(0.4469713223199599) * t200;
-    const wam7_real_t t206 = t198 + t202;
-    const wam7_real_t t207 = t168 * t201 + t169 * t206;
+    const wam7_real_t t206 = t198 + t202; /* link j7: motion */
+    const wam7_real_t t207 = t168 * t201 + t169 * t206; /* link j6: columns */
     const wam7_real_t t208 = t111 * t196 - t112 * t207;
     const wam7_real_t t209 = t168 * t206 - t169 * t201;
     const wam7_real_t t210 = t111 * t207 + t112 * t196;
-    const wam7_real_t t211 = t168 * t162 + t169 * t149;
+    const wam7_real_t t211 = t168 * t162 + t169 * t149; /* link j6: motion */
+    /* link j6: columns */
     const wam7_real_t t212 = t148 * t178 + t211 * t122 + (t208 * t153 + t209 * t150 + t210 * t155);
     out[32] = t212;
     const wam7_real_t t213 = t148 * t182 + t211 * t125 + (t208 * t158 + t209 * t157 + t210 * t159);
@@ -427,12 +443,13 @@ int wam7_regressor_packed(
     out[144] = t214;
     out[168] = t148 * t191;
     out[185] = WAM7_C(0.4469713223199599) * t211;
-    const wam7_real_t t215 = t197 + t202;
-    const wam7_real_t t216 = t168 * t215 - t169 * t204;
+    const wam7_real_t t215 = t197 + t202; /* link j7: motion */
+    const wam7_real_t t216 = t168 * t215 - t169 * t204; /* link j6: columns */
     const wam7_real_t t217 = t112 * t216 + t111 * t193;
     const wam7_real_t t218 = t168 * t204 + t169 * t215;
     const wam7_real_t t219 = t111 * t216 - t112 * t193;
-    const wam7_real_t t220 = t169 * t162 - t168 * t149;
+    const wam7_real_t t220 = t169 * t162 - t168 * t149; /* link j6: motion */
+    /* link j6: columns */
     const wam7_real_t t221 = t148 * t175 + t220 * t122 + (t217 * t153 + t218 * t150 - t219 * t155);
     out[33] = t221;
     const wam7_real_t t222 = t148 * t181 + t220 * t125 + (t217 * t158 + t218 * t157 - t219 * t159);
@@ -443,45 +460,46 @@ int wam7_regressor_packed(
     out[145] = t223;
     out[169] = -(t148 * t190);
     out[186] = WAM7_C(0.4469713223199599) * t220;
-    const wam7_real_t t226 = t225 * t204 - t224 * t193;
+    const wam7_real_t t226 = t225 * t204 - t224 * t193; /* link j7: motion */
     const wam7_real_t t227 = t225 * t176 + t224 * t172;
     const wam7_real_t t228 = dq[6] + t171;
     const wam7_real_t t229 = t227 * t228;
     const wam7_real_t t230 = t229 + t226;
-    const wam7_real_t t231 = t224 * t175 + t225 * t122;
-    const wam7_real_t t232 = t224 * t176 - t225 * t172;
+    const wam7_real_t t231 = t224 * t175 + t225 * t122; /* link j7: velocities by those of the joints */
+    const wam7_real_t t232 = t224 * t176 - t225 * t172; /* link j7: motion */
     const wam7_real_t t233 = t232 * t227;
     const wam7_real_t t234 = t232 * t228;
-    const wam7_real_t t235 = t224 * t122 - t225 * t175;
-    const wam7_real_t t236 = t234 * t235;
+    const wam7_real_t t235 = t224 * t122 - t225 * t175; /* link j7: velocities by those of the joints */
+    const wam7_real_t t236 = t234 * t235; /* link j7: columns */
     out[34] = t230 * t231 + (t233 * t178 - t236);
-    const wam7_real_t t237 = t224 * t181 + t225 * t125;
+    const wam7_real_t t237 = t224 * t181 + t225 * t125; /* link j7: velocities by those of the joints */
     const wam7_real_t t238 = t224 * t125 - t225 * t181;
-    const wam7_real_t t239 = t234 * t238;
+    const wam7_real_t t239 = t234 * t238; /* link j7: columns */
     out[78] = t230 * t237 + (t233 * t182 - t239);
-    const wam7_real_t t240 = t225 * t128 - t224 * t184;
+    const wam7_real_t t240 = t225 * t128 - t224 * t184; /* link j7: velocities by those of the joints */
     const wam7_real_t t241 = t225 * t184 + t224 * t128;
-    const wam7_real_t t242 = t234 * t241;
+    const wam7_real_t t242 = t234 * t241; /* link j7: columns */
     out[115] = t230 * t240 + (t233 * t185 - t242);
-    const wam7_real_t t243 = t224 * t187 + t225 * t131;
+    const wam7_real_t t243 = t224 * t187 + t225 * t131; /* link j7: velocities by those of the joints */
     const wam7_real_t t244 = t224 * t131 - t225 * t187;
-    const wam7_real_t t245 = t234 * t244;
+    const wam7_real_t t245 = t234 * t244; /* link j7: columns */
     out[146] = t230 * t243 + (t233 * t188 - t245);
-    const wam7_real_t t246 = t224 * t190;
+    const wam7_real_t t246 = t224 * t190; /* link j7: velocities by those of the joints */
     const wam7_real_t t247 = t225 * t190;
-    const wam7_real_t t248 = t234 * t247;
+    const wam7_real_t t248 = t234 * t247; /* link j7: columns */
     out[170] = t233 * t191 - t248 - t230 * t246;
+    /* link j7: velocities by those of the joints */
     const wam7_real_t t249 = WAM7_C(0.4469713223199599) * t225;
     const wam7_real_t t250 = WAM7_C(0.4469713223199599) * t224;
-    const wam7_real_t t251 = t234 * t250;
+    const wam7_real_t t251 = t234 * t250; /* link j7: columns */
     out[187] = t230 * t249 - t251;
     out[197] = WAM7_C(0.9996900960702182) * t233;
-    const wam7_real_t t252 = t229 + t230;
-    const wam7_real_t t253 = t224 * t204 + t225 * t193;
-    const wam7_real_t t254 = t234 + (t234 + t253);
-    const wam7_real_t t255 = t232 * t232;
+    const wam7_real_t t252 = t229 + t230; /* link j7: force and moment */
+    const wam7_real_t t253 = t224 * t204 + t225 * t193; /* link j7: motion */
+    const wam7_real_t t254 = t234 + (t234 + t253); /* link j7: force and moment */
+    const wam7_real_t t255 = t232 * t232; /* link j7: motion */
     const wam7_real_t t256 = t227 * t227;
-    const wam7_real_t t257 = t255 - t256;
+    const wam7_real_t t257 = t255 - t256; /* link j7: force and moment */
     out[35] = t252 * t235 + t254 * t231 + t257 * t178;
     out[79] = t252 * t238 + t254 * t237 + t257 * t182;
     out[116] = t252 * t241 + t254 * t240 + t257 * t185;
@@ -489,10 +507,10 @@ int wam7_regressor_packed(
     out[171] = t252 * t247 - t254 * t246 + t257 * t191;
     out[188] = t252 * t250 + t254 * t249;
     out[198] = WAM7_C(0.9996900960702182) * t257;
-    const wam7_real_t t258 = ddq[6] - t195;
-    const wam7_real_t t259 = t233 - t258;
-    const wam7_real_t t260 = t228 * t228;
-    const wam7_real_t t261 = t260 - t255;
+    const wam7_real_t t258 = ddq[6] - t195; /* link j7: motion */
+    const wam7_real_t t259 = t233 - t258; /* link j7: force and moment */
+    const wam7_real_t t260 = t228 * t228; /* link j7: motion */
+    const wam7_real_t t261 = t260 - t255; /* link j7: force and moment */
     out[36] = t226 * t178 - t259 * t231 + t261 * t235;
     out[80] = t226 * t182 - t259 * t237 + t261 * t238;
     out[117] = t226 * t185 - t259 * t240 + t261 * t241;
@@ -517,13 +535,14 @@ int wam7_regressor_packed(
     out[191] = t251 + t229 * t249;
     out[201] = WAM7_C(0.9996900960702182) * t258;
     const wam7_real_t t264 = t256 + t260;
-    const wam7_real_t t265 = t225 * t259 - t224 * t264;
+    const wam7_real_t t265 = t225 * t259 - t224 * t264; /* link j7: columns */
     const wam7_real_t t266 = t169 * t265 - t168 * t254;
     const wam7_real_t t267 = t225 * t264 + t224 * t259;
     const wam7_real_t t268 = t112 * t266 + t111 * t267;
     const wam7_real_t t269 = t168 * t265 + t169 * t254;
     const wam7_real_t t270 = t111 * t266 - t112 * t267;
-    const wam7_real_t t271 = t225 * t220 + t224 * t148;
+    const wam7_real_t t271 = t225 * t220 + t224 * t148; /* link j7: motion */
+    /* link j7: columns */
     const wam7_real_t t272 = t211 * t235 + t271 * t178 + (t268 * t153 - t269 * t150 - t270 * t155);
     out[39] = t272;
     const wam7_real_t t273 = t211 * t238 + t271 * t182 + (t268 * t158 - t269 * t157 - t270 * t159);
@@ -535,14 +554,15 @@ int wam7_regressor_packed(
     out[175] = t211 * t247 + t271 * t191;
     out[192] = t211 * t250;
     out[202] = WAM7_C(0.9996900960702182) * t271;
-    const wam7_real_t t275 = t255 + t260;
-    const wam7_real_t t276 = t224 * t262 - t225 * t275;
+    const wam7_real_t t275 = t255 + t260; /* link j7: force and moment */
+    const wam7_real_t t276 = t224 * t262 - t225 * t275; /* link j7: columns */
     const wam7_real_t t277 = t168 * t252 - t169 * t276;
     const wam7_real_t t278 = t225 * t262 + t224 * t275;
     const wam7_real_t t279 = t112 * t277 + t111 * t278;
     const wam7_real_t t280 = t168 * t276 + t169 * t252;
     const wam7_real_t t281 = t111 * t277 - t112 * t278;
-    const wam7_real_t t282 = t224 * t220 - t225 * t148;
+    const wam7_real_t t282 = t224 * t220 - t225 * t148; /* link j7: motion */
+    /* link j7: columns */
     const wam7_real_t t283 = t282 * t178 - t211 * t231 + (t279 * t153 + t280 * t150 - t281 * t155);
     out[40] = t283;
     const wam7_real_t t284 = t282 * t182 - t211 * t237 + (t279 * t158 + t280 * t157 - t281 * t159);
@@ -555,29 +575,29 @@ int wam7_regressor_packed(
     out[193] = -(t211 * t249);
     out[203] = WAM7_C(0.9996900960702182) * t282;
     out[41] = WAM7_C(91.90371991247264) * dq[0];
-    const wam7_real_t t286 = wam7_sign(dq[0]);
+    const wam7_real_t t286 = wam7_sign(dq[0]); /* joint j1: coulomb_friction */
     out[42] = WAM7_C(2.1881838074398248) * t286;
     out[85] = WAM7_C(61.81619256017505) * dq[1];
-    const wam7_real_t t287 = wam7_sign(dq[1]);
+    const wam7_real_t t287 = wam7_sign(dq[1]); /* joint j2: coulomb_friction */
     out[86] = WAM7_C(2.1881838074398248) * t287;
     out[122] = WAM7_C(61.81619256017505) * dq[2];
-    const wam7_real_t t288 = wam7_sign(dq[2]);
+    const wam7_real_t t288 = wam7_sign(dq[2]); /* joint j3: coulomb_friction */
     out[123] = WAM7_C(2.1881838074398248) * t288;
     out[124] = WAM7_C(61.81619256017505) * ddq[2];
     out[153] = WAM7_C(39.387308533916844) * dq[3];
-    const wam7_real_t t289 = wam7_sign(dq[3]);
+    const wam7_real_t t289 = wam7_sign(dq[3]); /* joint j4: coulomb_friction */
     out[154] = WAM7_C(2.1881838074398248) * t289;
     out[155] = WAM7_C(39.387308533916844) * ddq[3];
     out[177] = WAM7_C(40.16949152542373) * dq[4];
-    const wam7_real_t t290 = wam7_sign(dq[4]);
+    const wam7_real_t t290 = wam7_sign(dq[4]); /* joint j5: coulomb_friction */
     out[178] = WAM7_C(4.237288135593221) * t290;
     out[179] = WAM7_C(40.16949152542373) * ddq[4];
     out[194] = WAM7_C(40.16949152542373) * dq[5];
-    const wam7_real_t t291 = wam7_sign(dq[5]);
+    const wam7_real_t t291 = wam7_sign(dq[5]); /* joint j6: coulomb_friction */
     out[195] = WAM7_C(4.237288135593221) * t291;
     out[196] = WAM7_C(40.16949152542373) * ddq[5];
     out[204] = WAM7_C(222.83582089552237) * dq[6];
-    const wam7_real_t t292 = wam7_sign(dq[6]);
+    const wam7_real_t t292 = wam7_sign(dq[6]); /* joint j7: coulomb_friction */
     out[205] = WAM7_C(14.925373134328357) * t292;
     out[206] = WAM7_C(222.83582089552237) * ddq[6];
     return WAM7_STATUS_OK;

@@ -6,7 +6,7 @@
  * Arm wam7, description 552353c9ea1f05cf.
  * SPDX-License-Identifier: 0BSD
  *
- * Operations: 1397 (815 mul, 575 add, 7 neg), 12 trig, 7 other.
+ * Operations: 1397 (815 mul, 575 add, 7 neg), 12 trig, 7 other calls (sign, select and the like).
  *
  * @param[in]   q    [7]    [rad]                          joint coordinates; norm at most 10000
  * @param[in]   dq   [7]    [rad/s]                        joint velocities; norm at most 100000
@@ -37,17 +37,17 @@
  */
 #include "wam7_private.h"
 
-#if WAM7_GENERATION != 0x7A21915FUL
+#if WAM7_GENERATION != 0x0E2B7B26UL
 #error "wam7.h and wam7_regressor_standard.c are of different generations: generate the arm again"
 #endif
 
-int wam7_regressor_standard(
+wam7_status_t wam7_regressor_standard(
     const wam7_real_t q[WAM7_N_JOINTS],
     const wam7_real_t dq[WAM7_N_JOINTS],
     const wam7_real_t ddq[WAM7_N_JOINTS],
     wam7_real_t out[WAM7_N_JOINTS * WAM7_N_STANDARD_PARAMETERS])
 {
-    int status = WAM7_STATUS_OK;
+    wam7_status_t status = WAM7_STATUS_OK;
 
     if (!wam7_within_joints(q, WAM7_C(1.0e8))
         || !wam7_within_joints(dq, WAM7_C(1.0e10))
@@ -73,22 +73,22 @@ int wam7_regressor_standard(
     WAM7_SINCOS(q[6], &t304, &t303);
     const wam7_real_t t0 = WAM7_C(0.05209961446285298) * ddq[0];
     out[5] = t0;
-    const wam7_real_t t2 = t1 * ddq[0];
+    const wam7_real_t t2 = t1 * ddq[0]; /* link j2: motion */
     const wam7_real_t t4 = t3 * dq[0];
     const wam7_real_t t5 = dq[1] * t4;
     const wam7_real_t t6 = t2 + t5;
-    const wam7_real_t t7 = WAM7_C(0.05209961446285298) * t1;
-    const wam7_real_t t8 = t1 * dq[0];
+    const wam7_real_t t7 = WAM7_C(0.05209961446285298) * t1; /* link j2: velocities by those of the joints */
+    const wam7_real_t t8 = t1 * dq[0]; /* link j2: motion */
     const wam7_real_t t9 = dq[1] * t8;
-    const wam7_real_t t10 = WAM7_C(0.05209961446285298) * t3;
-    const wam7_real_t t11 = t9 * t10;
+    const wam7_real_t t10 = WAM7_C(0.05209961446285298) * t3; /* link j2: velocities by those of the joints */
+    const wam7_real_t t11 = t9 * t10; /* link j2: columns */
     const wam7_real_t t12 = t6 * t7 + t11;
     out[10] = t12;
-    const wam7_real_t t13 = t8 * t4;
+    const wam7_real_t t13 = t8 * t4; /* link j2: motion */
     const wam7_real_t t14 = WAM7_C(0.07745783389167521) * t13;
     out[101] = -t14;
-    const wam7_real_t t15 = t5 + t6;
-    const wam7_real_t t16 = t3 * ddq[0];
+    const wam7_real_t t15 = t5 + t6; /* link j3: motion */
+    const wam7_real_t t16 = t3 * ddq[0]; /* link j2: motion */
     const wam7_real_t t17 = t16 - t9;
     out[11] = t15 * t10 + (t17 - t9) * t7;
     const wam7_real_t t18 = t8 * t8;
@@ -99,7 +99,7 @@ int wam7_regressor_standard(
     out[103] = WAM7_C(-0.07745783389167521) * t2;
     out[13] = t0 - t12;
     out[104] = t14;
-    const wam7_real_t t21 = t13 - ddq[1];
+    const wam7_real_t t21 = t13 - ddq[1]; /* link j3: motion */
     out[14] = t21 * t10 - (t19 - t20) * t7;
     out[105] = WAM7_C(-0.07745783389167521) * t16;
     out[15] = t5 * t7 - t11;
@@ -111,38 +111,39 @@ int wam7_regressor_standard(
     const wam7_real_t t26 = dq[2] + t4;
     const wam7_real_t t27 = t25 * t26;
     const wam7_real_t t28 = t27 - t24;
-    const wam7_real_t t29 = t23 * t7;
-    const wam7_real_t t30 = t23 * t8 - t22 * dq[1];
+    const wam7_real_t t29 = t23 * t7; /* link j3: velocities by those of the joints */
+    const wam7_real_t t30 = t23 * t8 - t22 * dq[1]; /* link j3: motion */
     const wam7_real_t t31 = t30 * t25;
-    const wam7_real_t t32 = t31 * t10;
-    const wam7_real_t t33 = t30 * t26;
-    const wam7_real_t t34 = t22 * t7;
-    const wam7_real_t t35 = t33 * t34;
+    const wam7_real_t t32 = t31 * t10; /* link j3: columns */
+    const wam7_real_t t33 = t30 * t26; /* link j3: motion */
+    const wam7_real_t t34 = t22 * t7; /* link j3: velocities by those of the joints */
+    const wam7_real_t t35 = t33 * t34; /* link j3: columns */
     const wam7_real_t t36 = t32 - t35 - t28 * t29;
     out[20] = t36;
+    /* link j3: velocities by those of the joints */
     const wam7_real_t t37 = WAM7_C(0.07745783389167521) * t22;
     const wam7_real_t t38 = WAM7_C(0.07745783389167521) * t23;
-    const wam7_real_t t39 = t33 * t38;
+    const wam7_real_t t39 = t33 * t38; /* link j3: columns */
     const wam7_real_t t40 = t28 * t37 - t39;
     out[111] = t40;
     const wam7_real_t t41 = WAM7_C(0.07745783389167521) * t31;
     out[202] = t41;
-    const wam7_real_t t42 = t27 + t28;
-    const wam7_real_t t43 = t22 * t15 - t23 * t21;
+    const wam7_real_t t42 = t27 + t28; /* link j4: motion */
+    const wam7_real_t t43 = t22 * t15 - t23 * t21; /* link j3: motion */
     const wam7_real_t t44 = t43 + t33;
-    const wam7_real_t t45 = t33 + t44;
-    const wam7_real_t t46 = t30 * t30;
+    const wam7_real_t t45 = t33 + t44; /* link j4: motion */
+    const wam7_real_t t46 = t30 * t30; /* link j3: motion */
     const wam7_real_t t47 = t25 * t25;
-    const wam7_real_t t48 = t46 - t47;
+    const wam7_real_t t48 = t46 - t47; /* link j3: columns */
     const wam7_real_t t49 = t42 * t34 - t45 * t29 + t48 * t10;
     out[21] = t49;
     const wam7_real_t t50 = t42 * t38 + t45 * t37;
     out[112] = t50;
     out[203] = WAM7_C(0.07745783389167521) * t48;
-    const wam7_real_t t51 = ddq[2] + t17;
-    const wam7_real_t t52 = t31 - t51;
-    const wam7_real_t t53 = t26 * t26;
-    const wam7_real_t t54 = t53 - t46;
+    const wam7_real_t t51 = ddq[2] + t17; /* link j3: motion */
+    const wam7_real_t t52 = t31 - t51; /* link j4: motion */
+    const wam7_real_t t53 = t26 * t26; /* link j3: motion */
+    const wam7_real_t t54 = t53 - t46; /* link j3: columns */
     const wam7_real_t t55 = t52 * t29 - t24 * t10 + t54 * t34;
     out[22] = t55;
     const wam7_real_t t56 = t54 * t38 - t52 * t37;
@@ -155,8 +156,8 @@ int wam7_regressor_standard(
     const wam7_real_t t60 = t44 * t38 - t59;
     out[114] = t60;
     out[205] = -t41;
-    const wam7_real_t t61 = t51 + t31;
-    const wam7_real_t t62 = t47 - t53;
+    const wam7_real_t t61 = t51 + t31; /* link j4: motion */
+    const wam7_real_t t62 = t47 - t53; /* link j3: columns */
     const wam7_real_t t63 = t43 * t10 + t61 * t34 - t62 * t29;
     out[24] = t63;
     const wam7_real_t t64 = t61 * t38 + t62 * t37;
@@ -168,14 +169,14 @@ int wam7_regressor_standard(
     out[116] = t66;
     const wam7_real_t t67 = WAM7_C(0.07745783389167521) * t51;
     out[207] = t67;
-    const wam7_real_t t68 = WAM7_C(-9.81) * t3;
+    const wam7_real_t t68 = WAM7_C(-9.81) * t3; /* link j2: motion */
     const wam7_real_t t69 = WAM7_C(-9.81) * t1;
-    const wam7_real_t t70 = t22 * t69;
+    const wam7_real_t t70 = t22 * t69; /* link j3: motion */
     out[26] = WAM7_C(-0.55) * t55 - (t70 * t10 - t68 * t34);
     out[117] = t68 * t38 + WAM7_C(-0.55) * t56;
     out[208] = WAM7_C(-0.07745783389167521) * t70 + WAM7_C(0.04260180864042137) * t24;
     const wam7_real_t t71 = t23 * t69;
-    const wam7_real_t t72 = WAM7_C(-0.55) * t63 - (t71 * t10 - t68 * t29);
+    const wam7_real_t t72 = WAM7_C(-0.55) * t63 - (t71 * t10 - t68 * t29); /* link j3: columns */
     out[27] = t72;
     const wam7_real_t t73 = WAM7_C(-0.55) * t64 - t68 * t37;
     out[118] = t73;
@@ -189,38 +190,39 @@ int wam7_regressor_standard(
     out[119] = t78 + WAM7_C(1.1) * t77;
     out[29] = WAM7_C(0.55) * t76 + WAM7_C(0.30250000000000005) * t75;
     out[120] = WAM7_C(0.55) * t78 + WAM7_C(0.30250000000000005) * t77;
-    const wam7_real_t t81 = t80 * t42 - t79 * t61;
+    const wam7_real_t t81 = t80 * t42 - t79 * t61; /* link j4: motion */
     const wam7_real_t t82 = t80 * t26 - t79 * t30;
     const wam7_real_t t83 = dq[3] + t25;
     const wam7_real_t t84 = t82 * t83;
     const wam7_real_t t85 = t81 - t84;
-    const wam7_real_t t86 = t80 * t29 + t79 * t10;
-    const wam7_real_t t87 = t80 * t30 + t79 * t26;
+    const wam7_real_t t86 = t80 * t29 + t79 * t10; /* link j4: velocities by those of the joints */
+    const wam7_real_t t87 = t80 * t30 + t79 * t26; /* link j4: motion */
     const wam7_real_t t88 = t87 * t83;
-    const wam7_real_t t89 = t80 * t10 - t79 * t29;
-    const wam7_real_t t90 = t88 * t89;
-    const wam7_real_t t91 = t87 * t82;
-    const wam7_real_t t92 = t90 - t91 * t34 - t85 * t86;
+    const wam7_real_t t89 = t80 * t10 - t79 * t29; /* link j4: velocities by those of the joints */
+    const wam7_real_t t90 = t88 * t89; /* link j4: columns */
+    const wam7_real_t t91 = t87 * t82; /* link j4: motion */
+    const wam7_real_t t92 = t90 - t91 * t34 - t85 * t86; /* link j4: columns */
     out[30] = t92;
-    const wam7_real_t t93 = t80 * t37;
+    const wam7_real_t t93 = t80 * t37; /* link j4: velocities by those of the joints */
     const wam7_real_t t94 = t79 * t37;
-    const wam7_real_t t95 = t88 * t94;
+    const wam7_real_t t95 = t88 * t94; /* link j4: columns */
     const wam7_real_t t96 = t85 * t93 + (t95 - t91 * t38);
     out[121] = t96;
+    /* link j4: velocities by those of the joints */
     const wam7_real_t t97 = WAM7_C(0.07745783389167521) * t79;
     const wam7_real_t t98 = WAM7_C(0.07745783389167521) * t80;
-    const wam7_real_t t99 = t88 * t98;
+    const wam7_real_t t99 = t88 * t98; /* link j4: columns */
     const wam7_real_t t100 = t99 - t85 * t97;
     out[212] = t100;
     const wam7_real_t t101 = WAM7_C(-0.12156576707999026) * t91;
     out[303] = t101;
-    const wam7_real_t t102 = t84 - t85;
-    const wam7_real_t t103 = t80 * t61 + t79 * t42;
+    const wam7_real_t t102 = t84 - t85; /* link j5: motion */
+    const wam7_real_t t103 = t80 * t61 + t79 * t42; /* link j4: motion */
     const wam7_real_t t104 = t103 - t88;
-    const wam7_real_t t105 = t88 - t104;
-    const wam7_real_t t106 = t87 * t87;
+    const wam7_real_t t105 = t88 - t104; /* link j5: motion */
+    const wam7_real_t t106 = t87 * t87; /* link j4: motion */
     const wam7_real_t t107 = t82 * t82;
-    const wam7_real_t t108 = t106 - t107;
+    const wam7_real_t t108 = t106 - t107; /* link j4: columns */
     const wam7_real_t t109 = t108 * t34 - (t105 * t86 - t102 * t89);
     out[31] = t109;
     const wam7_real_t t110 = t102 * t94 + t105 * t93 + t108 * t38;
@@ -228,10 +230,10 @@ int wam7_regressor_standard(
     const wam7_real_t t111 = t102 * t98 - t105 * t97;
     out[213] = t111;
     out[304] = WAM7_C(0.12156576707999026) * t108;
-    const wam7_real_t t112 = ddq[3] + t44;
-    const wam7_real_t t113 = t112 + t91;
-    const wam7_real_t t114 = t83 * t83;
-    const wam7_real_t t115 = t106 - t114;
+    const wam7_real_t t112 = ddq[3] + t44; /* link j4: motion */
+    const wam7_real_t t113 = t112 + t91; /* link j5: motion */
+    const wam7_real_t t114 = t83 * t83; /* link j4: motion */
+    const wam7_real_t t115 = t106 - t114; /* link j4: columns */
     out[32] = t81 * t34 - t113 * t86 + t115 * t89;
     out[123] = t113 * t93 + t81 * t38 + t115 * t94;
     out[214] = t115 * t98 - t113 * t97;
@@ -240,8 +242,8 @@ int wam7_regressor_standard(
     out[124] = t40 + t66 - t96;
     out[215] = t41 + t67 - t100;
     out[306] = -t101;
-    const wam7_real_t t116 = t91 - t112;
-    const wam7_real_t t117 = t114 - t107;
+    const wam7_real_t t116 = t91 - t112; /* link j5: motion */
+    const wam7_real_t t117 = t114 - t107; /* link j4: columns */
     out[34] = t116 * t89 - t103 * t34 + t117 * t86;
     out[125] = t116 * t94 - t103 * t38 - t117 * t93;
     out[216] = t116 * t98 + t117 * t97;
@@ -254,31 +256,37 @@ int wam7_regressor_standard(
     out[217] = t120;
     const wam7_real_t t121 = WAM7_C(0.12156576707999026) * t112;
     out[308] = t121;
-    const wam7_real_t t122 = t107 + t114;
+    const wam7_real_t t122 = t107 + t114; /* link j5: motion */
+    /* link j3: velocities by those of the joints */
     const wam7_real_t t123 = WAM7_C(-0.02865478795456914) * t1;
     const wam7_real_t t124 = t22 * t123;
-    const wam7_real_t t125 = WAM7_C(-0.045) * t34;
+    const wam7_real_t t125 = WAM7_C(-0.045) * t34; /* link j4: velocities by those of the joints */
     const wam7_real_t t126 = t80 * t124 + t79 * t125;
     const wam7_real_t t127 = t79 * t124 - t80 * t125;
     const wam7_real_t t128 = t23 * t123 + WAM7_C(-0.002344482650828384) * t3;
-    const wam7_real_t t129 = t69 + WAM7_C(-0.55) * t21;
+    const wam7_real_t t129 = t69 + WAM7_C(-0.55) * t21; /* link j3: motion */
     const wam7_real_t t130 = WAM7_C(0.55) * t15;
-    const wam7_real_t t131 = t22 * t129 - t23 * t130 + WAM7_C(0.045) * t52;
+    const wam7_real_t t131 = t22 * t129 - t23 * t130 + WAM7_C(0.045) * t52; /* link j4: motion */
     const wam7_real_t t132 = t23 * t129 + t22 * t130 + WAM7_C(-0.045) * (t47 + t53);
     const wam7_real_t t133 = t68 + WAM7_C(0.55) * (t18 + t20) + WAM7_C(0.045) * t45;
     const wam7_real_t t134 = t79 * t132 - t80 * t133;
+    /* link j4: columns */
     const wam7_real_t t135 = t122 * t126 + t113 * t127 + t105 * t128 - (t131 * t89 + t134 * t34);
     out[36] = t135;
+    /* link j4: velocities by those of the joints */
     const wam7_real_t t136 = t23 * (WAM7_C(-0.04260180864042137) * t80 + WAM7_C(-0.003485602525125384) * t79);
     const wam7_real_t t137 = WAM7_C(0.003485602525125384) * t80;
     const wam7_real_t t138 = t23 * (WAM7_C(-0.04260180864042137) * t79 + t137);
+    /* link j3: velocities by those of the joints */
     const wam7_real_t t139 = WAM7_C(0.04260180864042137) * t22;
+    /* link j4: columns */
     const wam7_real_t t140 = t122 * t136 + t113 * t138 + t105 * t139 - (t131 * t94 + t134 * t38);
     out[127] = t140;
     out[218] = WAM7_C(-0.003485602525125384) * t105 - t131 * t98;
     out[309] = WAM7_C(-0.12156576707999026) * t134;
-    const wam7_real_t t141 = t106 + t114;
-    const wam7_real_t t142 = t80 * t132 + t79 * t133;
+    const wam7_real_t t141 = t106 + t114; /* link j5: motion */
+    const wam7_real_t t142 = t80 * t132 + t79 * t133; /* link j4: motion */
+    /* link j4: columns */
     const wam7_real_t t143 = t131 * t86 - t142 * t34 - (t116 * t126 + t141 * t127 - t102 * t128);
     out[37] = t143;
     const wam7_real_t t144 = t102 * t139 - (t116 * t136 + t141 * t138) - (t131 * t93 + t142 * t38);
@@ -293,52 +301,53 @@ int wam7_regressor_standard(
     out[39] = t131 * t128 - (t142 * t126 + t134 * t127);
     out[130] = t131 * t139 - (t142 * t136 + t134 * t138);
     out[221] = WAM7_C(-0.003485602525125384) * t131;
-    const wam7_real_t t149 = t147 * t116 + t148 * t102;
+    const wam7_real_t t149 = t147 * t116 + t148 * t102; /* link j5: motion */
     const wam7_real_t t150 = t147 * t87 + t148 * t83;
     const wam7_real_t t151 = dq[4] + t82;
     const wam7_real_t t152 = t150 * t151;
     const wam7_real_t t153 = t152 - t149;
-    const wam7_real_t t154 = t147 * t34 - t148 * t86;
-    const wam7_real_t t155 = t148 * t87 - t147 * t83;
+    const wam7_real_t t154 = t147 * t34 - t148 * t86; /* link j5: velocities by those of the joints */
+    const wam7_real_t t155 = t148 * t87 - t147 * t83; /* link j5: motion */
     const wam7_real_t t156 = t155 * t150;
     const wam7_real_t t157 = t155 * t151;
-    const wam7_real_t t158 = t147 * t86 + t148 * t34;
-    const wam7_real_t t159 = t157 * t158;
+    const wam7_real_t t158 = t147 * t86 + t148 * t34; /* link j5: velocities by those of the joints */
+    const wam7_real_t t159 = t157 * t158; /* link j5: columns */
     const wam7_real_t t160 = t153 * t154 + (t156 * t89 - t159);
     out[40] = t160;
-    const wam7_real_t t161 = t148 * t93 + t147 * t38;
+    const wam7_real_t t161 = t148 * t93 + t147 * t38; /* link j5: velocities by those of the joints */
     const wam7_real_t t162 = t148 * t38 - t147 * t93;
-    const wam7_real_t t163 = t157 * t162;
+    const wam7_real_t t163 = t157 * t162; /* link j5: columns */
     const wam7_real_t t164 = t153 * t161 + (t156 * t94 - t163);
     out[131] = t164;
-    const wam7_real_t t165 = t148 * t97;
+    const wam7_real_t t165 = t148 * t97; /* link j5: velocities by those of the joints */
     const wam7_real_t t166 = t147 * t97;
-    const wam7_real_t t167 = t157 * t166;
+    const wam7_real_t t167 = t157 * t166; /* link j5: columns */
     const wam7_real_t t168 = t156 * t98 - t167 - t153 * t165;
     out[222] = t168;
+    /* link j5: velocities by those of the joints */
     const wam7_real_t t169 = WAM7_C(0.12156576707999026) * t147;
     const wam7_real_t t170 = WAM7_C(0.12156576707999026) * t148;
-    const wam7_real_t t171 = t157 * t170;
+    const wam7_real_t t171 = t157 * t170; /* link j5: columns */
     const wam7_real_t t172 = t153 * t169 - t171;
     out[313] = t172;
     const wam7_real_t t173 = WAM7_C(0.4469713223199599) * t156;
     out[404] = t173;
-    const wam7_real_t t174 = t152 + t153;
-    const wam7_real_t t175 = t148 * t116 - t147 * t102;
+    const wam7_real_t t174 = t152 + t153; /* link j6: motion */
+    const wam7_real_t t175 = t148 * t116 - t147 * t102; /* link j5: motion */
     const wam7_real_t t176 = t175 - t157;
-    const wam7_real_t t177 = t176 - t157;
-    const wam7_real_t t178 = t155 * t155;
+    const wam7_real_t t177 = t176 - t157; /* link j6: motion */
+    const wam7_real_t t178 = t155 * t155; /* link j5: motion */
     const wam7_real_t t179 = t150 * t150;
-    const wam7_real_t t180 = t178 - t179;
+    const wam7_real_t t180 = t178 - t179; /* link j5: columns */
     out[41] = t180 * t89 - (t177 * t154 - t174 * t158);
     out[132] = t174 * t162 - t177 * t161 + t180 * t94;
     out[223] = t174 * t166 + t177 * t165 + t180 * t98;
     out[314] = t174 * t170 - t177 * t169;
     out[405] = WAM7_C(0.4469713223199599) * t180;
-    const wam7_real_t t181 = ddq[4] + t104;
-    const wam7_real_t t182 = t156 - t181;
-    const wam7_real_t t183 = t151 * t151;
-    const wam7_real_t t184 = t183 - t178;
+    const wam7_real_t t181 = ddq[4] + t104; /* link j5: motion */
+    const wam7_real_t t182 = t156 - t181; /* link j6: motion */
+    const wam7_real_t t183 = t151 * t151; /* link j5: motion */
+    const wam7_real_t t184 = t183 - t178; /* link j5: columns */
     out[42] = t184 * t158 - (t182 * t154 + t149 * t89);
     out[133] = t184 * t162 - (t182 * t161 + t149 * t94);
     out[224] = t182 * t165 - t149 * t98 + t184 * t166;
@@ -349,8 +358,8 @@ int wam7_regressor_standard(
     out[225] = t100 + t120 - t168;
     out[316] = t101 + t121 - t172;
     out[407] = -t173;
-    const wam7_real_t t185 = t181 + t156;
-    const wam7_real_t t186 = t179 - t183;
+    const wam7_real_t t185 = t181 + t156; /* link j6: motion */
+    const wam7_real_t t186 = t179 - t183; /* link j5: columns */
     out[44] = t186 * t154 - (t175 * t89 - t185 * t158);
     out[135] = t185 * t162 - t175 * t94 + t186 * t161;
     out[226] = t185 * t166 - t175 * t98 - t186 * t165;
@@ -366,37 +375,45 @@ int wam7_regressor_standard(
     out[318] = t190;
     const wam7_real_t t191 = WAM7_C(0.4469713223199599) * t181;
     out[409] = t191;
+    /* link j5: velocities by those of the joints */
     const wam7_real_t t192 = t128 + (WAM7_C(-0.3) * t86 + WAM7_C(0.045) * t89);
     const wam7_real_t t193 = WAM7_C(0.3) * t34 - t126;
     const wam7_real_t t194 = t147 * t193 + t148 * t192;
-    const wam7_real_t t195 = t179 + t183;
-    const wam7_real_t t196 = t147 * t192 - t148 * t193;
+    const wam7_real_t t195 = t179 + t183; /* link j6: motion */
+    const wam7_real_t t196 = t147 * t192 - t148 * t193; /* link j5: velocities by those of the joints */
     const wam7_real_t t197 = t125 + t127;
-    const wam7_real_t t198 = t142 + (WAM7_C(0.045) * t122 + WAM7_C(-0.3) * t116);
+    const wam7_real_t t198 = t142 + (WAM7_C(0.045) * t122 + WAM7_C(-0.3) * t116); /* link j5: motion */
     const wam7_real_t t199 = t131 + (WAM7_C(-0.045) * t105 + WAM7_C(-0.3) * t102);
     const wam7_real_t t200 = t147 * t198 + t148 * t199;
     const wam7_real_t t201 = t134 + (WAM7_C(0.045) * t113 + WAM7_C(-0.3) * t141);
+    /* link j5: columns */
     const wam7_real_t t202 = t195 * t196 + t182 * t194 - t177 * t197 - (t201 * t158 + t200 * t89);
     out[46] = t202;
+    /* link j5: velocities by those of the joints */
     const wam7_real_t t203 = WAM7_C(0.02323735016750256) * t23 - t136;
     const wam7_real_t t204 = t139 + (WAM7_C(0.3) * t93 + WAM7_C(0.045) * t94);
     const wam7_real_t t205 = t147 * t203 + t148 * t204;
     const wam7_real_t t206 = t147 * t204 - t148 * t203;
     const wam7_real_t t207 = WAM7_C(-0.003485602525125384) * t23 + t138;
+    /* link j5: columns */
     const wam7_real_t t208 = t195 * t206 + t182 * t205 - t177 * t207 - (t201 * t162 + t200 * t94);
     out[137] = t208;
+    /* link j5: velocities by those of the joints */
     const wam7_real_t t209 = t137 + WAM7_C(-0.02323735016750256) * t79 - WAM7_C(0.003485602525125384);
     const wam7_real_t t210 = t148 * t209;
     const wam7_real_t t211 = t147 * t209;
-    const wam7_real_t t212 = t195 * t211 + t182 * t210 - (t201 * t166 + t200 * t98);
+    const wam7_real_t t212 = t195 * t211 + t182 * t210 - (t201 * t166 + t200 * t98); /* link j5: columns */
     out[228] = t212;
+    /* link j5: velocities by those of the joints */
     const wam7_real_t t213 = WAM7_C(0.036469730123997075) * t147;
     const wam7_real_t t214 = WAM7_C(-0.036469730123997075) * t148;
+    /* link j5: columns */
     const wam7_real_t t215 = t195 * t214 + t182 * t213 + WAM7_C(0.005470459518599561) * t177 - t201 * t170;
     out[319] = t215;
     out[410] = WAM7_C(-0.4469713223199599) * t200;
-    const wam7_real_t t216 = t178 + t183;
-    const wam7_real_t t217 = t147 * t199 - t148 * t198;
+    const wam7_real_t t216 = t178 + t183; /* link j6: motion */
+    const wam7_real_t t217 = t147 * t199 - t148 * t198; /* link j5: motion */
+    /* link j5: columns */
     const wam7_real_t t218 = t185 * t196 + t216 * t194 - t174 * t197 + (t201 * t154 + t217 * t89);
     out[47] = t218;
     const wam7_real_t t219 = t185 * t206 + t216 * t205 - t174 * t207 + (t201 * t161 + t217 * t94);
@@ -424,58 +441,59 @@ int wam7_regressor_standard(
     out[231] = t229;
     const wam7_real_t t230 = t217 * t214 + t200 * t213 + WAM7_C(0.005470459518599561) * t201;
     out[322] = t230;
-    const wam7_real_t t233 = t232 * t174 - t231 * t185;
+    const wam7_real_t t233 = t232 * t174 - t231 * t185; /* link j6: motion */
     const wam7_real_t t234 = t232 * t151 - t231 * t155;
     const wam7_real_t t235 = dq[5] + t150;
     const wam7_real_t t236 = t234 * t235;
     const wam7_real_t t237 = t236 - t233;
-    const wam7_real_t t238 = t232 * t154 - t231 * t89;
-    const wam7_real_t t239 = t232 * t155 + t231 * t151;
+    const wam7_real_t t238 = t232 * t154 - t231 * t89; /* link j6: velocities by those of the joints */
+    const wam7_real_t t239 = t232 * t155 + t231 * t151; /* link j6: motion */
     const wam7_real_t t240 = t239 * t235;
-    const wam7_real_t t241 = t231 * t154 + t232 * t89;
-    const wam7_real_t t242 = t240 * t241;
-    const wam7_real_t t243 = t239 * t234;
-    const wam7_real_t t244 = t242 - t243 * t158 - t237 * t238;
+    const wam7_real_t t241 = t231 * t154 + t232 * t89; /* link j6: velocities by those of the joints */
+    const wam7_real_t t242 = t240 * t241; /* link j6: columns */
+    const wam7_real_t t243 = t239 * t234; /* link j6: motion */
+    const wam7_real_t t244 = t242 - t243 * t158 - t237 * t238; /* link j6: columns */
     out[50] = t244;
-    const wam7_real_t t245 = t232 * t161 - t231 * t94;
+    const wam7_real_t t245 = t232 * t161 - t231 * t94; /* link j6: velocities by those of the joints */
     const wam7_real_t t246 = t231 * t161 + t232 * t94;
-    const wam7_real_t t247 = t240 * t246;
+    const wam7_real_t t247 = t240 * t246; /* link j6: columns */
     const wam7_real_t t248 = t247 - t243 * t162 - t237 * t245;
     out[141] = t248;
-    const wam7_real_t t249 = t232 * t165 + t231 * t98;
+    const wam7_real_t t249 = t232 * t165 + t231 * t98; /* link j6: velocities by those of the joints */
     const wam7_real_t t250 = t232 * t98 - t231 * t165;
-    const wam7_real_t t251 = t240 * t250;
+    const wam7_real_t t251 = t240 * t250; /* link j6: columns */
     const wam7_real_t t252 = t237 * t249 + (t251 - t243 * t166);
     out[232] = t252;
-    const wam7_real_t t253 = t232 * t169;
+    const wam7_real_t t253 = t232 * t169; /* link j6: velocities by those of the joints */
     const wam7_real_t t254 = t231 * t169;
-    const wam7_real_t t255 = t240 * t254;
+    const wam7_real_t t255 = t240 * t254; /* link j6: columns */
     const wam7_real_t t256 = t255 - t243 * t170 - t237 * t253;
     out[323] = t256;
+    /* link j6: velocities by those of the joints */
     const wam7_real_t t257 = WAM7_C(0.4469713223199599) * t231;
     const wam7_real_t t258 = WAM7_C(0.4469713223199599) * t232;
-    const wam7_real_t t259 = t240 * t258;
+    const wam7_real_t t259 = t240 * t258; /* link j6: columns */
     const wam7_real_t t260 = t237 * t257 + t259;
     out[414] = t260;
     const wam7_real_t t261 = WAM7_C(-0.4469713223199599) * t243;
     out[505] = t261;
-    const wam7_real_t t262 = t236 + t237;
-    const wam7_real_t t263 = t232 * t185 + t231 * t174;
+    const wam7_real_t t262 = t236 + t237; /* link j7: motion */
+    const wam7_real_t t263 = t232 * t185 + t231 * t174; /* link j6: motion */
     const wam7_real_t t264 = t263 - t240;
-    const wam7_real_t t265 = t240 - t264;
-    const wam7_real_t t266 = t239 * t239;
+    const wam7_real_t t265 = t240 - t264; /* link j7: motion */
+    const wam7_real_t t266 = t239 * t239; /* link j6: motion */
     const wam7_real_t t267 = t234 * t234;
-    const wam7_real_t t268 = t266 - t267;
+    const wam7_real_t t268 = t266 - t267; /* link j6: columns */
     out[51] = t262 * t241 + t265 * t238 + t268 * t158;
     out[142] = t262 * t246 + t265 * t245 + t268 * t162;
     out[233] = t262 * t250 - t265 * t249 + t268 * t166;
     out[324] = t262 * t254 + t265 * t253 + t268 * t170;
     out[415] = t262 * t258 - t265 * t257;
     out[506] = WAM7_C(0.4469713223199599) * t268;
-    const wam7_real_t t269 = ddq[5] - t176;
-    const wam7_real_t t270 = t269 + t243;
-    const wam7_real_t t271 = t235 * t235;
-    const wam7_real_t t272 = t266 - t271;
+    const wam7_real_t t269 = ddq[5] - t176; /* link j6: motion */
+    const wam7_real_t t270 = t269 + t243; /* link j7: motion */
+    const wam7_real_t t271 = t235 * t235; /* link j6: motion */
+    const wam7_real_t t272 = t266 - t271; /* link j6: columns */
     out[52] = t270 * t238 + t233 * t158 + t272 * t241;
     out[143] = t270 * t245 + t233 * t162 + t272 * t246;
     out[234] = t233 * t166 - t270 * t249 + t272 * t250;
@@ -488,8 +506,8 @@ int wam7_regressor_standard(
     out[326] = t172 + t190 - t256;
     out[417] = t173 + t191 - t260;
     out[508] = -t261;
-    const wam7_real_t t273 = t243 - t269;
-    const wam7_real_t t274 = t271 - t267;
+    const wam7_real_t t273 = t243 - t269; /* link j7: motion */
+    const wam7_real_t t274 = t271 - t267; /* link j6: columns */
     out[54] = t273 * t241 - t263 * t158 - t274 * t238;
     out[145] = t273 * t246 - t263 * t162 - t274 * t245;
     out[236] = t273 * t250 - t263 * t166 + t274 * t249;
@@ -508,28 +526,34 @@ int wam7_regressor_standard(
     out[419] = t279;
     const wam7_real_t t280 = WAM7_C(0.4469713223199599) * t269;
     out[510] = t280;
-    const wam7_real_t t281 = t267 + t271;
-    const wam7_real_t t282 = t232 * t196 - t231 * t197;
+    const wam7_real_t t281 = t267 + t271; /* link j7: motion */
+    const wam7_real_t t282 = t232 * t196 - t231 * t197; /* link j6: velocities by those of the joints */
     const wam7_real_t t283 = t231 * t196 + t232 * t197;
-    const wam7_real_t t284 = t231 * t217 - t232 * t201;
+    const wam7_real_t t284 = t231 * t217 - t232 * t201; /* link j6: motion */
+    /* link j6: columns */
     const wam7_real_t t285 = t281 * t282 + t270 * t283 + t265 * t194 - (t200 * t241 - t284 * t158);
     out[56] = t285;
-    const wam7_real_t t286 = t232 * t206 - t231 * t207;
+    const wam7_real_t t286 = t232 * t206 - t231 * t207; /* link j6: velocities by those of the joints */
     const wam7_real_t t287 = t231 * t206 + t232 * t207;
+    /* link j6: columns */
     const wam7_real_t t288 = t281 * t286 + t270 * t287 + t265 * t205 + (t284 * t162 - t200 * t246);
     out[147] = t288;
-    const wam7_real_t t289 = t232 * t211;
+    const wam7_real_t t289 = t232 * t211; /* link j6: velocities by those of the joints */
     const wam7_real_t t290 = t231 * t211;
+    /* link j6: columns */
     const wam7_real_t t291 = t281 * t289 + t270 * t290 + t265 * t210 - (t200 * t250 - t284 * t166);
     out[238] = t291;
+    /* link j6: velocities by those of the joints */
     const wam7_real_t t292 = t232 * t214 + WAM7_C(0.005470459518599561) * t231;
     const wam7_real_t t293 = t231 * t214 + WAM7_C(-0.005470459518599561) * t232;
+    /* link j6: columns */
     const wam7_real_t t294 = t281 * t292 + t270 * t293 + t265 * t213 + (t284 * t170 - t200 * t254);
     out[329] = t294;
     out[420] = -(t200 * t258);
     out[511] = WAM7_C(0.4469713223199599) * t284;
-    const wam7_real_t t295 = t266 + t271;
-    const wam7_real_t t296 = t232 * t217 + t231 * t201;
+    const wam7_real_t t295 = t266 + t271; /* link j7: motion */
+    const wam7_real_t t296 = t232 * t217 + t231 * t201; /* link j6: motion */
+    /* link j6: columns */
     const wam7_real_t t297 = t262 * t194 - (t273 * t282 + t295 * t283) - (t200 * t238 - t296 * t158);
     out[57] = t297;
     const wam7_real_t t298 = t262 * t205 - (t273 * t286 + t295 * t287) + (t296 * t162 - t200 * t245);
@@ -551,52 +575,53 @@ int wam7_regressor_standard(
     out[150] = t228;
     out[241] = t229;
     out[332] = t230;
-    const wam7_real_t t305 = t304 * t273 + t303 * t262;
+    const wam7_real_t t305 = t304 * t273 + t303 * t262; /* link j7: motion */
     const wam7_real_t t306 = t304 * t239 + t303 * t235;
     const wam7_real_t t307 = dq[6] + t234;
     const wam7_real_t t308 = t306 * t307;
     const wam7_real_t t309 = t308 - t305;
-    const wam7_real_t t310 = t303 * t238 + t304 * t158;
-    const wam7_real_t t311 = t303 * t239 - t304 * t235;
+    const wam7_real_t t310 = t303 * t238 + t304 * t158; /* link j7: velocities by those of the joints */
+    const wam7_real_t t311 = t303 * t239 - t304 * t235; /* link j7: motion */
     const wam7_real_t t312 = t311 * t306;
     const wam7_real_t t313 = t311 * t307;
-    const wam7_real_t t314 = t303 * t158 - t304 * t238;
-    const wam7_real_t t315 = t313 * t314;
+    const wam7_real_t t314 = t303 * t158 - t304 * t238; /* link j7: velocities by those of the joints */
+    const wam7_real_t t315 = t313 * t314; /* link j7: columns */
     const wam7_real_t t316 = t309 * t310 + (t312 * t241 - t315);
     out[60] = t316;
-    const wam7_real_t t317 = t303 * t245 + t304 * t162;
+    const wam7_real_t t317 = t303 * t245 + t304 * t162; /* link j7: velocities by those of the joints */
     const wam7_real_t t318 = t303 * t162 - t304 * t245;
-    const wam7_real_t t319 = t313 * t318;
+    const wam7_real_t t319 = t313 * t318; /* link j7: columns */
     const wam7_real_t t320 = t309 * t317 + (t312 * t246 - t319);
     out[151] = t320;
-    const wam7_real_t t321 = t304 * t166 - t303 * t249;
+    const wam7_real_t t321 = t304 * t166 - t303 * t249; /* link j7: velocities by those of the joints */
     const wam7_real_t t322 = t304 * t249 + t303 * t166;
-    const wam7_real_t t323 = t313 * t322;
+    const wam7_real_t t323 = t313 * t322; /* link j7: columns */
     const wam7_real_t t324 = t309 * t321 + (t312 * t250 - t323);
     out[242] = t324;
-    const wam7_real_t t325 = t303 * t253 + t304 * t170;
+    const wam7_real_t t325 = t303 * t253 + t304 * t170; /* link j7: velocities by those of the joints */
     const wam7_real_t t326 = t303 * t170 - t304 * t253;
-    const wam7_real_t t327 = t313 * t326;
+    const wam7_real_t t327 = t313 * t326; /* link j7: columns */
     const wam7_real_t t328 = t309 * t325 + (t312 * t254 - t327);
     out[333] = t328;
-    const wam7_real_t t329 = t303 * t257;
+    const wam7_real_t t329 = t303 * t257; /* link j7: velocities by those of the joints */
     const wam7_real_t t330 = t304 * t257;
-    const wam7_real_t t331 = t313 * t330;
+    const wam7_real_t t331 = t313 * t330; /* link j7: columns */
     const wam7_real_t t332 = t312 * t258 - t331 - t309 * t329;
     out[424] = t332;
+    /* link j7: velocities by those of the joints */
     const wam7_real_t t333 = WAM7_C(0.4469713223199599) * t304;
     const wam7_real_t t334 = WAM7_C(0.4469713223199599) * t303;
-    const wam7_real_t t335 = t313 * t334;
+    const wam7_real_t t335 = t313 * t334; /* link j7: columns */
     const wam7_real_t t336 = t309 * t333 - t335;
     out[515] = t336;
     const wam7_real_t t337 = WAM7_C(0.9996900960702182) * t312;
     out[606] = t337;
     const wam7_real_t t338 = t308 + t309;
-    const wam7_real_t t339 = t304 * t262 - t303 * t273;
-    const wam7_real_t t340 = t313 + (t339 + t313);
-    const wam7_real_t t341 = t311 * t311;
+    const wam7_real_t t339 = t304 * t262 - t303 * t273; /* link j7: motion */
+    const wam7_real_t t340 = t313 + (t339 + t313); /* link j7: columns */
+    const wam7_real_t t341 = t311 * t311; /* link j7: motion */
     const wam7_real_t t342 = t306 * t306;
-    const wam7_real_t t343 = t341 - t342;
+    const wam7_real_t t343 = t341 - t342; /* link j7: columns */
     out[61] = t338 * t314 + t340 * t310 + t343 * t241;
     out[152] = t338 * t318 + t340 * t317 + t343 * t246;
     out[243] = t338 * t322 + t340 * t321 + t343 * t250;
@@ -604,10 +629,10 @@ int wam7_regressor_standard(
     out[425] = t338 * t330 - t340 * t329 + t343 * t258;
     out[516] = t338 * t334 + t340 * t333;
     out[607] = WAM7_C(0.9996900960702182) * t343;
-    const wam7_real_t t344 = ddq[6] + t264;
-    const wam7_real_t t345 = t312 - t344;
-    const wam7_real_t t346 = t307 * t307;
-    const wam7_real_t t347 = t346 - t341;
+    const wam7_real_t t344 = ddq[6] + t264; /* link j7: motion */
+    const wam7_real_t t345 = t312 - t344; /* link j7: columns */
+    const wam7_real_t t346 = t307 * t307; /* link j7: motion */
+    const wam7_real_t t347 = t346 - t341; /* link j7: columns */
     out[62] = t347 * t314 - (t345 * t310 + t305 * t241);
     out[153] = t347 * t318 - (t345 * t317 + t305 * t246);
     out[244] = t347 * t322 - (t345 * t321 + t305 * t250);
@@ -638,35 +663,41 @@ int wam7_regressor_standard(
     out[429] = t344 * t258 + (t331 - t308 * t329);
     out[520] = t335 + t308 * t333;
     out[611] = WAM7_C(0.9996900960702182) * t344;
-    const wam7_real_t t350 = t200 + WAM7_C(-0.06) * t262;
+    const wam7_real_t t350 = t200 + WAM7_C(-0.06) * t262; /* link j7: motion */
     const wam7_real_t t351 = t296 + WAM7_C(0.06) * t273;
     const wam7_real_t t352 = t304 * t351 - t303 * t350;
     const wam7_real_t t353 = WAM7_C(-0.06) * t295 - t284;
-    const wam7_real_t t354 = t342 + t346;
+    const wam7_real_t t354 = t342 + t346; /* link j7: columns */
     const wam7_real_t t355 = t304 * t345 - t303 * t354;
-    const wam7_real_t t356 = t282 + WAM7_C(-0.06) * t158;
-    const wam7_real_t t357 = t304 * t354 + t303 * t345;
-    const wam7_real_t t358 = t194 + WAM7_C(0.06) * t238;
+    const wam7_real_t t356 = t282 + WAM7_C(-0.06) * t158; /* link j7: velocities by those of the joints */
+    const wam7_real_t t357 = t304 * t354 + t303 * t345; /* link j7: columns */
+    const wam7_real_t t358 = t194 + WAM7_C(0.06) * t238; /* link j7: velocities by those of the joints */
+    /* link j7: columns */
     const wam7_real_t t359 = t352 * t241 - t353 * t314 + (t340 * t283 - t355 * t356 + t357 * t358);
     out[66] = t359;
-    const wam7_real_t t360 = t286 + WAM7_C(-0.06) * t162;
+    const wam7_real_t t360 = t286 + WAM7_C(-0.06) * t162; /* link j7: velocities by those of the joints */
     const wam7_real_t t361 = t205 + WAM7_C(0.06) * t245;
+    /* link j7: columns */
     const wam7_real_t t362 = t352 * t246 - t353 * t318 + (t340 * t287 - t355 * t360 + t357 * t361);
     out[157] = t362;
-    const wam7_real_t t363 = t289 + WAM7_C(-0.06) * t166;
+    const wam7_real_t t363 = t289 + WAM7_C(-0.06) * t166; /* link j7: velocities by those of the joints */
     const wam7_real_t t364 = t210 + WAM7_C(-0.06) * t249;
+    /* link j7: columns */
     const wam7_real_t t365 = t352 * t250 - t353 * t322 + (t340 * t290 - t355 * t363 + t357 * t364);
     out[248] = t365;
+    /* link j7: velocities by those of the joints */
     const wam7_real_t t366 = t292 + WAM7_C(-0.007293946024799415) * t148;
     const wam7_real_t t367 = t213 + WAM7_C(0.06) * t253;
+    /* link j7: columns */
     const wam7_real_t t368 = t352 * t254 - t353 * t326 + (t340 * t293 - t355 * t366 + t357 * t367);
     out[339] = t368;
+    /* link j7: velocities by those of the joints */
     const wam7_real_t t369 = WAM7_C(-0.026818279339197594) * t231;
     out[430] = t352 * t258 - t353 * t330 + t357 * t369;
     out[521] = WAM7_C(0.026818279339197594) * t355 - t353 * t334;
     out[612] = WAM7_C(0.9996900960702182) * t352;
-    const wam7_real_t t370 = t303 * t351 + t304 * t350;
-    const wam7_real_t t371 = t341 + t346;
+    const wam7_real_t t370 = t303 * t351 + t304 * t350; /* link j7: motion */
+    const wam7_real_t t371 = t341 + t346; /* link j7: columns */
     const wam7_real_t t372 = t304 * t371 - t303 * t348;
     const wam7_real_t t373 = t304 * t348 + t303 * t371;
     const wam7_real_t t374 = t353 * t310 + t370 * t241 + (t373 * t358 - (t338 * t283 + t372 * t356));
@@ -695,31 +726,31 @@ int wam7_regressor_standard(
     out[433] = t379 * t369;
     out[524] = WAM7_C(-0.026818279339197594) * t378;
     out[70] = WAM7_C(91.90371991247264) * dq[0];
-    const wam7_real_t t380 = wam7_sign(dq[0]);
+    const wam7_real_t t380 = wam7_sign(dq[0]); /* joint j1: coulomb_friction */
     out[71] = WAM7_C(2.1881838074398248) * t380;
     out[72] = WAM7_C(91.90371991247264) * ddq[0];
     out[164] = WAM7_C(61.81619256017505) * dq[1];
-    const wam7_real_t t381 = wam7_sign(dq[1]);
+    const wam7_real_t t381 = wam7_sign(dq[1]); /* joint j2: coulomb_friction */
     out[165] = WAM7_C(2.1881838074398248) * t381;
     out[166] = WAM7_C(61.81619256017505) * ddq[1];
     out[258] = WAM7_C(61.81619256017505) * dq[2];
-    const wam7_real_t t382 = wam7_sign(dq[2]);
+    const wam7_real_t t382 = wam7_sign(dq[2]); /* joint j3: coulomb_friction */
     out[259] = WAM7_C(2.1881838074398248) * t382;
     out[260] = WAM7_C(61.81619256017505) * ddq[2];
     out[352] = WAM7_C(39.387308533916844) * dq[3];
-    const wam7_real_t t383 = wam7_sign(dq[3]);
+    const wam7_real_t t383 = wam7_sign(dq[3]); /* joint j4: coulomb_friction */
     out[353] = WAM7_C(2.1881838074398248) * t383;
     out[354] = WAM7_C(39.387308533916844) * ddq[3];
     out[446] = WAM7_C(40.16949152542373) * dq[4];
-    const wam7_real_t t384 = wam7_sign(dq[4]);
+    const wam7_real_t t384 = wam7_sign(dq[4]); /* joint j5: coulomb_friction */
     out[447] = WAM7_C(4.237288135593221) * t384;
     out[448] = WAM7_C(40.16949152542373) * ddq[4];
     out[540] = WAM7_C(40.16949152542373) * dq[5];
-    const wam7_real_t t385 = wam7_sign(dq[5]);
+    const wam7_real_t t385 = wam7_sign(dq[5]); /* joint j6: coulomb_friction */
     out[541] = WAM7_C(4.237288135593221) * t385;
     out[542] = WAM7_C(40.16949152542373) * ddq[5];
     out[634] = WAM7_C(222.83582089552237) * dq[6];
-    const wam7_real_t t386 = wam7_sign(dq[6]);
+    const wam7_real_t t386 = wam7_sign(dq[6]); /* joint j7: coulomb_friction */
     out[635] = WAM7_C(14.925373134328357) * t386;
     out[636] = WAM7_C(222.83582089552237) * ddq[6];
     /* always zero */

@@ -6,7 +6,7 @@
  * Arm wam7, description 552353c9ea1f05cf.
  * SPDX-License-Identifier: 0BSD
  *
- * Operations: 1272 (778 mul, 491 add, 3 neg), 12 trig, 7 other.
+ * Operations: 1272 (778 mul, 491 add, 3 neg), 12 trig, 7 other calls (sign, select and the like).
  *
  * @param[in]   q      [7]    [rad]                          joint coordinates; norm at most 10000
  * @param[in]   dq     [7]    [rad/s]                        joint velocities; norm at most 100000
@@ -37,18 +37,18 @@
  */
 #include "wam7_private.h"
 
-#if WAM7_GENERATION != 0x7A21915FUL
+#if WAM7_GENERATION != 0x0E2B7B26UL
 #error "wam7.h and wam7_slotine_li_regressor.c are of different generations: generate the arm again"
 #endif
 
-int wam7_slotine_li_regressor(
+wam7_status_t wam7_slotine_li_regressor(
     const wam7_real_t q[WAM7_N_JOINTS],
     const wam7_real_t dq[WAM7_N_JOINTS],
     const wam7_real_t dq_r[WAM7_N_JOINTS],
     const wam7_real_t ddq_r[WAM7_N_JOINTS],
     wam7_real_t out[WAM7_N_JOINTS * WAM7_N_PARAMETERS])
 {
-    int status = WAM7_STATUS_OK;
+    wam7_status_t status = WAM7_STATUS_OK;
 
     if (!wam7_within_joints(q, WAM7_C(1.0e8))
         || !wam7_within_joints(dq, WAM7_C(1.0e10))
@@ -74,22 +74,22 @@ int wam7_slotine_li_regressor(
     wam7_real_t t244, t243;
     WAM7_SINCOS(q[6], &t244, &t243);
     out[0] = WAM7_C(0.05209961446285298) * ddq_r[0];
-    const wam7_real_t t1 = t0 * dq[0];
+    const wam7_real_t t1 = t0 * dq[0]; /* link j2: motion */
     const wam7_real_t t2 = t0 * dq_r[0];
     const wam7_real_t t3 = WAM7_C(-0.5) * (t1 * dq_r[1] + dq[1] * t2);
     const wam7_real_t t5 = t4 * ddq_r[0];
     const wam7_real_t t6 = t3 - t5;
-    const wam7_real_t t7 = WAM7_C(-0.05209961446285298) * t4;
-    const wam7_real_t t8 = t4 * dq[0];
+    const wam7_real_t t7 = WAM7_C(-0.05209961446285298) * t4; /* link j2: velocities by those of the joints */
+    const wam7_real_t t8 = t4 * dq[0]; /* link j2: motion */
     const wam7_real_t t9 = t4 * dq_r[0];
     const wam7_real_t t10 = WAM7_C(-0.5) * (t8 * dq_r[1] + dq[1] * t9);
-    const wam7_real_t t11 = WAM7_C(0.05209961446285298) * t0;
-    const wam7_real_t t12 = t11 * t10;
+    const wam7_real_t t11 = WAM7_C(0.05209961446285298) * t0; /* link j2: velocities by those of the joints */
+    const wam7_real_t t12 = t11 * t10; /* link j2: columns */
     out[1] = t7 * t6 - t12;
-    const wam7_real_t t13 = t8 * t2 + t1 * t9;
+    const wam7_real_t t13 = t8 * t2 + t1 * t9; /* link j2: motion */
     out[63] = WAM7_C(-0.038728916945837605) * t13;
-    const wam7_real_t t14 = t3 + t6;
-    const wam7_real_t t15 = t0 * ddq_r[0];
+    const wam7_real_t t14 = t3 + t6; /* link j3: motion */
+    const wam7_real_t t15 = t0 * ddq_r[0]; /* link j2: motion */
     const wam7_real_t t16 = t15 + t10;
     out[2] = -(t11 * t14 + t7 * (t10 + t16));
     const wam7_real_t t17 = t8 * t9;
@@ -99,7 +99,7 @@ int wam7_slotine_li_regressor(
     const wam7_real_t t20 = dq[1] * dq_r[1];
     out[3] = t7 * (ddq_r[1] + t19) + t11 * (t17 - t20);
     out[65] = WAM7_C(-0.07745783389167521) * t5;
-    const wam7_real_t t21 = t19 - ddq_r[1];
+    const wam7_real_t t21 = t19 - ddq_r[1]; /* link j3: motion */
     out[4] = t11 * t21 - t7 * (t20 - t18);
     out[66] = WAM7_C(-0.07745783389167521) * t15;
     out[5] = t12 + t7 * t3;
@@ -113,41 +113,42 @@ int wam7_slotine_li_regressor(
     const wam7_real_t t28 = dq[2] + t1;
     const wam7_real_t t29 = WAM7_C(0.5) * (t25 * t26 + t28 * t27);
     const wam7_real_t t30 = t24 + t29;
-    const wam7_real_t t31 = t23 * t7;
-    const wam7_real_t t32 = t22 * dq[1] - t23 * t8;
+    const wam7_real_t t31 = t23 * t7; /* link j3: velocities by those of the joints */
+    const wam7_real_t t32 = t22 * dq[1] - t23 * t8; /* link j3: motion */
     const wam7_real_t t33 = t22 * dq_r[1] - t23 * t9;
     const wam7_real_t t34 = t32 * t27 + t25 * t33;
     const wam7_real_t t35 = WAM7_C(-0.5) * t34;
     const wam7_real_t t36 = WAM7_C(0.5) * (t32 * t26 + t28 * t33);
-    const wam7_real_t t37 = t22 * t7;
-    const wam7_real_t t38 = t37 * t36;
+    const wam7_real_t t37 = t22 * t7; /* link j3: velocities by those of the joints */
+    const wam7_real_t t38 = t37 * t36; /* link j3: columns */
     out[8] = t31 * t30 + (t11 * t35 - t38);
+    /* link j3: velocities by those of the joints */
     const wam7_real_t t39 = WAM7_C(0.07745783389167521) * t22;
     const wam7_real_t t40 = WAM7_C(0.07745783389167521) * t23;
-    const wam7_real_t t41 = t40 * t36;
+    const wam7_real_t t41 = t40 * t36; /* link j3: columns */
     out[70] = t39 * t30 + t41;
     out[132] = WAM7_C(-0.038728916945837605) * t34;
-    const wam7_real_t t42 = t29 + t30;
-    const wam7_real_t t43 = t23 * t21 + t22 * t14;
+    const wam7_real_t t42 = t29 + t30; /* link j4: motion */
+    const wam7_real_t t43 = t23 * t21 + t22 * t14; /* link j3: motion */
     const wam7_real_t t44 = t43 + t36;
-    const wam7_real_t t45 = t36 + t44;
-    const wam7_real_t t46 = t32 * t33;
+    const wam7_real_t t45 = t36 + t44; /* link j4: motion */
+    const wam7_real_t t46 = t32 * t33; /* link j3: motion */
     const wam7_real_t t47 = t25 * t27;
-    const wam7_real_t t48 = t46 - t47;
+    const wam7_real_t t48 = t46 - t47; /* link j3: columns */
     out[9] = t11 * t48 - (t37 * t42 + t31 * t45);
     out[71] = t40 * t42 - t39 * t45;
     out[133] = WAM7_C(0.07745783389167521) * t48;
-    const wam7_real_t t49 = ddq_r[2] + t16;
-    const wam7_real_t t50 = t49 - t35;
-    const wam7_real_t t51 = t28 * t26;
-    const wam7_real_t t52 = t51 - t46;
+    const wam7_real_t t49 = ddq_r[2] + t16; /* link j3: motion */
+    const wam7_real_t t50 = t49 - t35; /* link j4: motion */
+    const wam7_real_t t51 = t28 * t26; /* link j3: motion */
+    const wam7_real_t t52 = t51 - t46; /* link j3: columns */
     const wam7_real_t t53 = t31 * t50 + t11 * t24 - t37 * t52;
     out[10] = t53;
     const wam7_real_t t54 = t39 * t50 + t40 * t52;
     out[72] = t54;
     out[134] = WAM7_C(0.07745783389167521) * t24;
-    const wam7_real_t t55 = t49 + t35;
-    const wam7_real_t t56 = t47 - t51;
+    const wam7_real_t t55 = t49 + t35; /* link j4: motion */
+    const wam7_real_t t56 = t47 - t51; /* link j3: columns */
     const wam7_real_t t57 = t31 * t56 - (t11 * t43 + t37 * t55);
     out[11] = t57;
     const wam7_real_t t58 = t40 * t55 + t39 * t56;
@@ -156,9 +157,9 @@ int wam7_slotine_li_regressor(
     out[12] = t11 * t49 + (t38 + t31 * t29);
     out[74] = t39 * t29 - t41;
     out[136] = WAM7_C(0.07745783389167521) * t49;
-    const wam7_real_t t59 = WAM7_C(-9.81) * t0;
+    const wam7_real_t t59 = WAM7_C(-9.81) * t0; /* link j2: motion */
     const wam7_real_t t60 = WAM7_C(9.81) * t4;
-    const wam7_real_t t61 = t22 * t60;
+    const wam7_real_t t61 = t22 * t60; /* link j3: motion */
     out[13] = t61 * t11 - t59 * t37 + WAM7_C(-0.55) * t53;
     out[75] = t59 * t40 + WAM7_C(-0.55) * t54;
     out[137] = WAM7_C(0.07745783389167521) * t61 + WAM7_C(-0.04260180864042137) * t24;
@@ -166,52 +167,53 @@ int wam7_slotine_li_regressor(
     out[14] = t62 * t11 - t59 * t31 + WAM7_C(-0.55) * t57;
     out[76] = WAM7_C(-0.55) * t58 - t59 * t39;
     out[138] = WAM7_C(0.07745783389167521) * t62 + WAM7_C(0.04260180864042137) * t43;
-    const wam7_real_t t65 = t64 * t42 - t63 * t55;
+    const wam7_real_t t65 = t64 * t42 - t63 * t55; /* link j4: motion */
     const wam7_real_t t66 = t63 * t32 + t64 * t28;
     const wam7_real_t t67 = dq_r[3] + t27;
     const wam7_real_t t68 = dq[3] + t25;
     const wam7_real_t t69 = t63 * t33 + t64 * t26;
     const wam7_real_t t70 = WAM7_C(0.5) * (t66 * t67 + t68 * t69);
     const wam7_real_t t71 = t70 - t65;
-    const wam7_real_t t72 = t63 * t11 - t64 * t31;
-    const wam7_real_t t73 = t63 * t28 - t64 * t32;
+    const wam7_real_t t72 = t63 * t11 - t64 * t31; /* link j4: velocities by those of the joints */
+    const wam7_real_t t73 = t63 * t28 - t64 * t32; /* link j4: motion */
     const wam7_real_t t74 = t63 * t26 - t64 * t33;
     const wam7_real_t t75 = WAM7_C(-0.5) * (t73 * t67 + t68 * t74);
-    const wam7_real_t t76 = t63 * t31 + t64 * t11;
-    const wam7_real_t t77 = t76 * t75;
-    const wam7_real_t t78 = t73 * t69 + t66 * t74;
+    const wam7_real_t t76 = t63 * t31 + t64 * t11; /* link j4: velocities by those of the joints */
+    const wam7_real_t t77 = t76 * t75; /* link j4: columns */
+    const wam7_real_t t78 = t73 * t69 + t66 * t74; /* link j4: motion */
     const wam7_real_t t79 = WAM7_C(-0.5) * t78;
     out[15] = t72 * t71 - (t77 + t37 * t79);
-    const wam7_real_t t80 = t64 * t39;
+    const wam7_real_t t80 = t64 * t39; /* link j4: velocities by those of the joints */
     const wam7_real_t t81 = t63 * t39;
-    const wam7_real_t t82 = t81 * t75;
+    const wam7_real_t t82 = t81 * t75; /* link j4: columns */
     out[77] = t40 * t79 - t82 - t80 * t71;
+    /* link j4: velocities by those of the joints */
     const wam7_real_t t83 = WAM7_C(0.07745783389167521) * t63;
     const wam7_real_t t84 = WAM7_C(0.07745783389167521) * t64;
-    const wam7_real_t t85 = t84 * t75;
+    const wam7_real_t t85 = t84 * t75; /* link j4: columns */
     out[139] = t83 * t71 - t85;
     out[201] = WAM7_C(-0.06078288353999513) * t78;
-    const wam7_real_t t86 = t70 + t71;
-    const wam7_real_t t87 = t64 * t55 + t63 * t42;
+    const wam7_real_t t86 = t70 + t71; /* link j5: motion */
+    const wam7_real_t t87 = t64 * t55 + t63 * t42; /* link j4: motion */
     const wam7_real_t t88 = t87 + t75;
-    const wam7_real_t t89 = t75 + t88;
-    const wam7_real_t t90 = t73 * t74;
+    const wam7_real_t t89 = t75 + t88; /* link j5: motion */
+    const wam7_real_t t90 = t73 * t74; /* link j4: motion */
     const wam7_real_t t91 = t66 * t69;
-    const wam7_real_t t92 = t90 - t91;
+    const wam7_real_t t92 = t90 - t91; /* link j4: columns */
     out[16] = t76 * t86 + t72 * t89 - t37 * t92;
     out[78] = t81 * t86 - t80 * t89 + t40 * t92;
     out[140] = t84 * t86 + t83 * t89;
     out[202] = WAM7_C(0.12156576707999026) * t92;
-    const wam7_real_t t93 = t44 - ddq_r[3];
-    const wam7_real_t t94 = t93 + t79;
-    const wam7_real_t t95 = t68 * t67;
-    const wam7_real_t t96 = t90 - t95;
+    const wam7_real_t t93 = t44 - ddq_r[3]; /* link j4: motion */
+    const wam7_real_t t94 = t93 + t79; /* link j5: motion */
+    const wam7_real_t t95 = t68 * t67; /* link j4: motion */
+    const wam7_real_t t96 = t90 - t95; /* link j4: columns */
     out[17] = t76 * t96 - (t37 * t65 - t72 * t94);
     out[79] = t40 * t65 - t80 * t94 + t81 * t96;
     out[141] = t83 * t94 + t84 * t96;
     out[203] = WAM7_C(0.12156576707999026) * t65;
-    const wam7_real_t t97 = t93 - t79;
-    const wam7_real_t t98 = t95 - t91;
+    const wam7_real_t t97 = t93 - t79; /* link j5: motion */
+    const wam7_real_t t98 = t95 - t91; /* link j4: columns */
     out[18] = t37 * t87 + t76 * t97 + t72 * t98;
     out[80] = t81 * t97 - t40 * t87 - t80 * t98;
     out[142] = t84 * t97 + t83 * t98;
@@ -220,89 +222,96 @@ int wam7_slotine_li_regressor(
     out[81] = t82 - t80 * t70 - t40 * t93;
     out[143] = t85 + t83 * t70;
     out[205] = WAM7_C(-0.12156576707999026) * t93;
+    /* link j3: velocities by those of the joints */
     const wam7_real_t t99 = WAM7_C(-0.02865478795456914) * t4;
     const wam7_real_t t100 = t22 * t99;
-    const wam7_real_t t101 = WAM7_C(-0.045) * t37;
+    const wam7_real_t t101 = WAM7_C(-0.045) * t37; /* link j4: velocities by those of the joints */
     const wam7_real_t t102 = t63 * t100 + t64 * t101;
-    const wam7_real_t t103 = t91 + t95;
-    const wam7_real_t t104 = t64 * t100 - t63 * t101;
+    const wam7_real_t t103 = t91 + t95; /* link j5: motion */
+    const wam7_real_t t104 = t64 * t100 - t63 * t101; /* link j4: velocities by those of the joints */
     const wam7_real_t t105 = t23 * t99 + WAM7_C(-0.002344482650828384) * t0;
-    const wam7_real_t t106 = t60 + WAM7_C(0.55) * t21;
+    const wam7_real_t t106 = t60 + WAM7_C(0.55) * t21; /* link j3: motion */
     const wam7_real_t t107 = WAM7_C(0.55) * t14;
-    const wam7_real_t t108 = t22 * t106 - t23 * t107 + WAM7_C(0.045) * t50;
+    const wam7_real_t t108 = t22 * t106 - t23 * t107 + WAM7_C(0.045) * t50; /* link j4: motion */
     const wam7_real_t t109 = t23 * t106 + t22 * t107 + WAM7_C(0.045) * (t47 + t51);
     const wam7_real_t t110 = t59 + WAM7_C(0.55) * (t17 + t20) + WAM7_C(-0.045) * t45;
     const wam7_real_t t111 = t63 * t109 + t64 * t110;
+    /* link j4: columns */
     const wam7_real_t t112 = t104 * t103 - t102 * t94 - t105 * t89 + (t76 * t108 - t37 * t111);
     out[20] = t112;
+    /* link j4: velocities by those of the joints */
     const wam7_real_t t113 = WAM7_C(0.003485602525125384) * t64;
     const wam7_real_t t114 = t23 * (WAM7_C(0.04260180864042137) * t63 - t113);
     const wam7_real_t t115 = t23 * (WAM7_C(-0.04260180864042137) * t64 + WAM7_C(-0.003485602525125384) * t63);
+    /* link j3: velocities by those of the joints */
     const wam7_real_t t116 = WAM7_C(0.04260180864042137) * t22;
+    /* link j4: columns */
     const wam7_real_t t117 = t115 * t103 + t114 * t94 - t116 * t89 + (t81 * t108 + t40 * t111);
     out[82] = t117;
     out[144] = WAM7_C(0.003485602525125384) * t89 + t84 * t108;
     out[206] = WAM7_C(0.12156576707999026) * t111;
-    const wam7_real_t t118 = t90 + t95;
-    const wam7_real_t t119 = t64 * t109 - t63 * t110;
+    const wam7_real_t t118 = t90 + t95; /* link j5: motion */
+    const wam7_real_t t119 = t64 * t109 - t63 * t110; /* link j4: motion */
+    /* link j4: columns */
     const wam7_real_t t120 = t105 * t86 - (t104 * t97 + t102 * t118) - (t72 * t108 + t37 * t119);
     out[21] = t120;
     const wam7_real_t t121 = t114 * t118 - t115 * t97 + t116 * t86 + (t80 * t108 + t40 * t119);
     out[83] = t121;
     out[145] = WAM7_C(-0.003485602525125384) * t86 - t83 * t108;
     out[207] = WAM7_C(0.12156576707999026) * t119;
-    const wam7_real_t t124 = t122 * t97 + t123 * t86;
+    const wam7_real_t t124 = t122 * t97 + t123 * t86; /* link j5: motion */
     const wam7_real_t t125 = t122 * t73 + t123 * t68;
     const wam7_real_t t126 = dq_r[4] + t69;
     const wam7_real_t t127 = t122 * t74 + t123 * t67;
     const wam7_real_t t128 = dq[4] + t66;
     const wam7_real_t t129 = WAM7_C(0.5) * (t125 * t126 + t128 * t127);
     const wam7_real_t t130 = t124 - t129;
-    const wam7_real_t t131 = t123 * t72 + t122 * t37;
-    const wam7_real_t t132 = t122 * t68 - t123 * t73;
+    const wam7_real_t t131 = t123 * t72 + t122 * t37; /* link j5: velocities by those of the joints */
+    const wam7_real_t t132 = t122 * t68 - t123 * t73; /* link j5: motion */
     const wam7_real_t t133 = t122 * t67 - t123 * t74;
     const wam7_real_t t134 = t132 * t127 + t125 * t133;
     const wam7_real_t t135 = WAM7_C(0.5) * t134;
     const wam7_real_t t136 = WAM7_C(0.5) * (t132 * t126 + t128 * t133);
-    const wam7_real_t t137 = t122 * t72 - t123 * t37;
-    const wam7_real_t t138 = t137 * t136;
+    const wam7_real_t t137 = t122 * t72 - t123 * t37; /* link j5: velocities by those of the joints */
+    const wam7_real_t t138 = t137 * t136; /* link j5: columns */
     out[22] = t131 * t130 - (t76 * t135 - t138);
-    const wam7_real_t t139 = t123 * t80 + t122 * t40;
+    const wam7_real_t t139 = t123 * t80 + t122 * t40; /* link j5: velocities by those of the joints */
     const wam7_real_t t140 = t123 * t40 - t122 * t80;
-    const wam7_real_t t141 = t140 * t136;
+    const wam7_real_t t141 = t140 * t136; /* link j5: columns */
     out[84] = t141 - t81 * t135 - t139 * t130;
-    const wam7_real_t t142 = t123 * t83;
+    const wam7_real_t t142 = t123 * t83; /* link j5: velocities by those of the joints */
     const wam7_real_t t143 = t122 * t83;
-    const wam7_real_t t144 = t143 * t136;
+    const wam7_real_t t144 = t143 * t136; /* link j5: columns */
     out[146] = t142 * t130 - (t84 * t135 - t144);
+    /* link j5: velocities by those of the joints */
     const wam7_real_t t145 = WAM7_C(0.12156576707999026) * t122;
     const wam7_real_t t146 = WAM7_C(0.12156576707999026) * t123;
-    const wam7_real_t t147 = t146 * t136;
+    const wam7_real_t t147 = t146 * t136; /* link j5: columns */
     out[208] = t147 - t145 * t130;
     out[270] = WAM7_C(-0.22348566115997995) * t134;
-    const wam7_real_t t148 = t129 - t130;
-    const wam7_real_t t149 = t122 * t86 - t123 * t97;
+    const wam7_real_t t148 = t129 - t130; /* link j6: motion */
+    const wam7_real_t t149 = t122 * t86 - t123 * t97; /* link j5: motion */
     const wam7_real_t t150 = t149 - t136;
-    const wam7_real_t t151 = t136 - t150;
-    const wam7_real_t t152 = t132 * t133;
+    const wam7_real_t t151 = t136 - t150; /* link j6: motion */
+    const wam7_real_t t152 = t132 * t133; /* link j5: motion */
     const wam7_real_t t153 = t125 * t127;
-    const wam7_real_t t154 = t152 - t153;
+    const wam7_real_t t154 = t152 - t153; /* link j5: columns */
     out[23] = t137 * t148 + t131 * t151 + t76 * t154;
     out[85] = t140 * t148 - t139 * t151 + t81 * t154;
     out[147] = t143 * t148 + t142 * t151 + t84 * t154;
     out[209] = t146 * t148 - t145 * t151;
     out[271] = WAM7_C(0.4469713223199599) * t154;
-    const wam7_real_t t155 = ddq_r[4] + t88;
-    const wam7_real_t t156 = t155 + t135;
-    const wam7_real_t t157 = t128 * t126;
-    const wam7_real_t t158 = t157 - t152;
+    const wam7_real_t t155 = ddq_r[4] + t88; /* link j5: motion */
+    const wam7_real_t t156 = t155 + t135; /* link j6: motion */
+    const wam7_real_t t157 = t128 * t126; /* link j5: motion */
+    const wam7_real_t t158 = t157 - t152; /* link j5: columns */
     out[24] = t137 * t158 - (t131 * t156 + t76 * t124);
     out[86] = t139 * t156 - t81 * t124 + t140 * t158;
     out[148] = t143 * t158 - (t142 * t156 + t84 * t124);
     out[210] = t145 * t156 + t146 * t158;
     out[272] = WAM7_C(-0.4469713223199599) * t124;
-    const wam7_real_t t159 = t135 - t155;
-    const wam7_real_t t160 = t153 - t157;
+    const wam7_real_t t159 = t135 - t155; /* link j6: motion */
+    const wam7_real_t t160 = t153 - t157; /* link j5: columns */
     out[25] = t76 * t149 - t137 * t159 - t131 * t160;
     out[87] = t81 * t149 - t140 * t159 + t139 * t160;
     out[149] = t84 * t149 - t143 * t159 - t142 * t160;
@@ -313,31 +322,37 @@ int wam7_slotine_li_regressor(
     out[150] = t84 * t155 - (t144 + t142 * t129);
     out[212] = t145 * t129 - t147;
     out[274] = WAM7_C(0.4469713223199599) * t155;
-    const wam7_real_t t161 = t153 + t157;
-    const wam7_real_t t162 = t123 * t161 + t122 * t156;
-    const wam7_real_t t163 = t104 + WAM7_C(0.3) * t37;
+    const wam7_real_t t161 = t153 + t157; /* link j6: motion */
+    const wam7_real_t t162 = t123 * t161 + t122 * t156; /* link j5: columns */
+    const wam7_real_t t163 = t104 + WAM7_C(0.3) * t37; /* link j5: velocities by those of the joints */
     const wam7_real_t t164 = t101 - t102;
-    const wam7_real_t t165 = t123 * t156 - t122 * t161;
+    const wam7_real_t t165 = t123 * t156 - t122 * t161; /* link j5: columns */
+    /* link j5: velocities by those of the joints */
     const wam7_real_t t166 = t105 + (WAM7_C(-0.3) * t72 + WAM7_C(0.045) * t76);
-    const wam7_real_t t167 = t119 + (WAM7_C(-0.045) * t103 + WAM7_C(0.3) * t97);
+    const wam7_real_t t167 = t119 + (WAM7_C(-0.045) * t103 + WAM7_C(0.3) * t97); /* link j5: motion */
     const wam7_real_t t168 = t108 + (WAM7_C(-0.045) * t89 - WAM7_C(-0.3) * t86);
     const wam7_real_t t169 = t122 * t167 + t123 * t168;
     const wam7_real_t t170 = t111 + (WAM7_C(0.045) * t94 + WAM7_C(0.3) * t118);
+    /* link j5: columns */
     const wam7_real_t t171 = t163 * t162 + t164 * t151 - t166 * t165 + (t137 * t170 + t76 * t169);
     out[27] = t171;
+    /* link j5: velocities by those of the joints */
     const wam7_real_t t172 = t115 + WAM7_C(-0.02323735016750256) * t23;
     const wam7_real_t t173 = WAM7_C(0.003485602525125384) * t23 + t114;
     const wam7_real_t t174 = t116 + (WAM7_C(0.3) * t80 + WAM7_C(0.045) * t81);
+    /* link j5: columns */
     const wam7_real_t t175 = t172 * t162 + t173 * t151 - t174 * t165 + (t140 * t170 + t81 * t169);
     out[89] = t175;
+    /* link j5: velocities by those of the joints */
     const wam7_real_t t176 = t113 + WAM7_C(-0.02323735016750256) * t63 - WAM7_C(0.003485602525125384);
     out[151] = t143 * t170 + t84 * t169 - t176 * t165;
     out[213] = WAM7_C(-0.036469730123997075) * t162 + WAM7_C(0.005470459518599561) * t151 + t146 * t170;
     out[275] = WAM7_C(0.4469713223199599) * t169;
-    const wam7_real_t t177 = t152 + t157;
-    const wam7_real_t t178 = t123 * t159 + t122 * t177;
+    const wam7_real_t t177 = t152 + t157; /* link j6: motion */
+    const wam7_real_t t178 = t123 * t159 + t122 * t177; /* link j5: columns */
     const wam7_real_t t179 = t122 * t159 - t123 * t177;
-    const wam7_real_t t180 = t123 * t167 - t122 * t168;
+    const wam7_real_t t180 = t123 * t167 - t122 * t168; /* link j5: motion */
+    /* link j5: columns */
     const wam7_real_t t181 = t164 * t148 - t163 * t178 - t166 * t179 + (t131 * t170 + t76 * t180);
     out[28] = t181;
     const wam7_real_t t182 = t173 * t148 - t172 * t178 - t174 * t179 + (t81 * t180 - t139 * t170);
@@ -345,64 +360,65 @@ int wam7_slotine_li_regressor(
     out[152] = t142 * t170 + t84 * t180 - t176 * t179;
     out[214] = WAM7_C(0.036469730123997075) * t178 + WAM7_C(0.005470459518599561) * t148 - t145 * t170;
     out[276] = WAM7_C(0.4469713223199599) * t180;
-    const wam7_real_t t185 = t183 * t159 + t184 * t148;
+    const wam7_real_t t185 = t183 * t159 + t184 * t148; /* link j6: motion */
     const wam7_real_t t186 = t183 * t132 + t184 * t128;
     const wam7_real_t t187 = dq_r[5] + t127;
     const wam7_real_t t188 = dq[5] + t125;
     const wam7_real_t t189 = t183 * t133 + t184 * t126;
     const wam7_real_t t190 = WAM7_C(0.5) * (t186 * t187 + t188 * t189);
     const wam7_real_t t191 = t190 - t185;
-    const wam7_real_t t192 = t184 * t131 + t183 * t76;
-    const wam7_real_t t193 = t183 * t128 - t184 * t132;
+    const wam7_real_t t192 = t184 * t131 + t183 * t76; /* link j6: velocities by those of the joints */
+    const wam7_real_t t193 = t183 * t128 - t184 * t132; /* link j6: motion */
     const wam7_real_t t194 = t183 * t126 - t184 * t133;
     const wam7_real_t t195 = WAM7_C(-0.5) * (t193 * t187 + t188 * t194);
-    const wam7_real_t t196 = t184 * t76 - t183 * t131;
-    const wam7_real_t t197 = t196 * t195;
-    const wam7_real_t t198 = t193 * t189 + t186 * t194;
+    const wam7_real_t t196 = t184 * t76 - t183 * t131; /* link j6: velocities by those of the joints */
+    const wam7_real_t t197 = t196 * t195; /* link j6: columns */
+    const wam7_real_t t198 = t193 * t189 + t186 * t194; /* link j6: motion */
     const wam7_real_t t199 = WAM7_C(-0.5) * t198;
     out[29] = t192 * t191 - (t197 - t137 * t199);
-    const wam7_real_t t200 = t184 * t139 - t183 * t81;
+    const wam7_real_t t200 = t184 * t139 - t183 * t81; /* link j6: velocities by those of the joints */
     const wam7_real_t t201 = t183 * t139 + t184 * t81;
-    const wam7_real_t t202 = t201 * t195;
+    const wam7_real_t t202 = t201 * t195; /* link j6: columns */
     out[91] = t140 * t199 - t202 - t200 * t191;
-    const wam7_real_t t203 = t184 * t142 + t183 * t84;
+    const wam7_real_t t203 = t184 * t142 + t183 * t84; /* link j6: velocities by those of the joints */
     const wam7_real_t t204 = t184 * t84 - t183 * t142;
-    const wam7_real_t t205 = t204 * t195;
+    const wam7_real_t t205 = t204 * t195; /* link j6: columns */
     out[153] = t203 * t191 - (t205 - t143 * t199);
-    const wam7_real_t t206 = t184 * t145;
+    const wam7_real_t t206 = t184 * t145; /* link j6: velocities by those of the joints */
     const wam7_real_t t207 = t183 * t145;
-    const wam7_real_t t208 = t207 * t195;
+    const wam7_real_t t208 = t207 * t195; /* link j6: columns */
     out[215] = t146 * t199 - t208 - t206 * t191;
+    /* link j6: velocities by those of the joints */
     const wam7_real_t t209 = WAM7_C(0.4469713223199599) * t183;
     const wam7_real_t t210 = WAM7_C(0.4469713223199599) * t184;
-    const wam7_real_t t211 = t210 * t195;
+    const wam7_real_t t211 = t210 * t195; /* link j6: columns */
     out[277] = t209 * t191 - t211;
     out[339] = WAM7_C(-0.22348566115997995) * t198;
-    const wam7_real_t t212 = t190 + t191;
-    const wam7_real_t t213 = t184 * t159 - t183 * t148;
+    const wam7_real_t t212 = t190 + t191; /* link j7: motion */
+    const wam7_real_t t213 = t184 * t159 - t183 * t148; /* link j6: motion */
     const wam7_real_t t214 = t195 - t213;
-    const wam7_real_t t215 = t195 + t214;
-    const wam7_real_t t216 = t193 * t194;
+    const wam7_real_t t215 = t195 + t214; /* link j7: motion */
+    const wam7_real_t t216 = t193 * t194; /* link j6: motion */
     const wam7_real_t t217 = t186 * t189;
-    const wam7_real_t t218 = t216 - t217;
+    const wam7_real_t t218 = t216 - t217; /* link j6: columns */
     out[30] = t196 * t212 + t192 * t215 + t137 * t218;
     out[92] = t201 * t212 - t200 * t215 + t140 * t218;
     out[154] = t204 * t212 + t203 * t215 + t143 * t218;
     out[216] = t207 * t212 - t206 * t215 + t146 * t218;
     out[278] = t210 * t212 + t209 * t215;
     out[340] = WAM7_C(0.4469713223199599) * t218;
-    const wam7_real_t t219 = ddq_r[5] + t150;
-    const wam7_real_t t220 = t199 - t219;
-    const wam7_real_t t221 = t188 * t187;
-    const wam7_real_t t222 = t216 - t221;
+    const wam7_real_t t219 = ddq_r[5] + t150; /* link j6: motion */
+    const wam7_real_t t220 = t199 - t219; /* link j7: motion */
+    const wam7_real_t t221 = t188 * t187; /* link j6: motion */
+    const wam7_real_t t222 = t216 - t221; /* link j6: columns */
     out[31] = t192 * t220 + t137 * t185 + t196 * t222;
     out[93] = t140 * t185 - t200 * t220 + t201 * t222;
     out[155] = t203 * t220 + t143 * t185 + t204 * t222;
     out[217] = t146 * t185 - t206 * t220 + t207 * t222;
     out[279] = t209 * t220 + t210 * t222;
     out[341] = WAM7_C(0.4469713223199599) * t185;
-    const wam7_real_t t223 = t219 + t199;
-    const wam7_real_t t224 = t221 - t217;
+    const wam7_real_t t223 = t219 + t199; /* link j7: motion */
+    const wam7_real_t t224 = t221 - t217; /* link j6: columns */
     out[32] = t192 * t224 - (t196 * t223 - t137 * t213);
     out[94] = t140 * t213 - t201 * t223 - t200 * t224;
     out[156] = t203 * t224 - (t204 * t223 - t143 * t213);
@@ -415,12 +431,13 @@ int wam7_slotine_li_regressor(
     out[219] = t146 * t219 + (t208 - t206 * t190);
     out[281] = t211 + t209 * t190;
     out[343] = WAM7_C(0.4469713223199599) * t219;
-    const wam7_real_t t225 = t217 + t221;
-    const wam7_real_t t226 = t183 * t220 - t184 * t225;
+    const wam7_real_t t225 = t217 + t221; /* link j7: motion */
+    const wam7_real_t t226 = t183 * t220 - t184 * t225; /* link j6: columns */
     const wam7_real_t t227 = t123 * t226 - t122 * t215;
     const wam7_real_t t228 = t183 * t225 + t184 * t220;
     const wam7_real_t t229 = t122 * t226 + t123 * t215;
-    const wam7_real_t t230 = t183 * t180 + t184 * t170;
+    const wam7_real_t t230 = t183 * t180 + t184 * t170; /* link j6: motion */
+    /* link j6: columns */
     const wam7_real_t t231 = t164 * t228 - t163 * t227 - t166 * t229 + (t196 * t169 + t137 * t230);
     out[34] = t231;
     const wam7_real_t t232 = t173 * t228 - t172 * t227 - t174 * t229 + (t201 * t169 + t140 * t230);
@@ -431,12 +448,13 @@ int wam7_slotine_li_regressor(
     out[220] = t233;
     out[282] = t210 * t169;
     out[344] = WAM7_C(0.4469713223199599) * t230;
-    const wam7_real_t t234 = t216 + t221;
-    const wam7_real_t t235 = t183 * t234 - t184 * t223;
+    const wam7_real_t t234 = t216 + t221; /* link j7: motion */
+    const wam7_real_t t235 = t183 * t234 - t184 * t223; /* link j6: columns */
     const wam7_real_t t236 = t123 * t235 + t122 * t212;
     const wam7_real_t t237 = t183 * t223 + t184 * t234;
     const wam7_real_t t238 = t122 * t235 - t123 * t212;
-    const wam7_real_t t239 = t184 * t180 - t183 * t170;
+    const wam7_real_t t239 = t184 * t180 - t183 * t170; /* link j6: motion */
+    /* link j6: columns */
     const wam7_real_t t240 = t164 * t237 - t163 * t236 - t166 * t238 - (t192 * t169 - t137 * t239);
     out[35] = t240;
     const wam7_real_t t241 = t173 * t237 - t172 * t236 - t174 * t238 + (t200 * t169 + t140 * t239);
@@ -447,49 +465,50 @@ int wam7_slotine_li_regressor(
     out[221] = t242;
     out[283] = -(t209 * t169);
     out[345] = WAM7_C(0.4469713223199599) * t239;
-    const wam7_real_t t245 = t244 * t223 - t243 * t212;
+    const wam7_real_t t245 = t244 * t223 - t243 * t212; /* link j7: motion */
     const wam7_real_t t246 = t244 * t193 + t243 * t188;
     const wam7_real_t t247 = dq_r[6] + t189;
     const wam7_real_t t248 = t244 * t194 + t243 * t187;
     const wam7_real_t t249 = dq[6] + t186;
     const wam7_real_t t250 = WAM7_C(0.5) * (t246 * t247 + t249 * t248);
     const wam7_real_t t251 = t245 + t250;
-    const wam7_real_t t252 = t243 * t192 - t244 * t137;
-    const wam7_real_t t253 = t243 * t193 - t244 * t188;
+    const wam7_real_t t252 = t243 * t192 - t244 * t137; /* link j7: velocities by those of the joints */
+    const wam7_real_t t253 = t243 * t193 - t244 * t188; /* link j7: motion */
     const wam7_real_t t254 = t243 * t194 - t244 * t187;
     const wam7_real_t t255 = t253 * t248 + t246 * t254;
     const wam7_real_t t256 = WAM7_C(0.5) * t255;
     const wam7_real_t t257 = WAM7_C(-0.5) * (t253 * t247 + t249 * t254);
-    const wam7_real_t t258 = t244 * t192 + t243 * t137;
-    const wam7_real_t t259 = t258 * t257;
+    const wam7_real_t t258 = t244 * t192 + t243 * t137; /* link j7: velocities by those of the joints */
+    const wam7_real_t t259 = t258 * t257; /* link j7: columns */
     out[36] = t259 + t196 * t256 - t252 * t251;
-    const wam7_real_t t260 = t243 * t200 + t244 * t140;
+    const wam7_real_t t260 = t243 * t200 + t244 * t140; /* link j7: velocities by those of the joints */
     const wam7_real_t t261 = t243 * t140 - t244 * t200;
-    const wam7_real_t t262 = t261 * t257;
+    const wam7_real_t t262 = t261 * t257; /* link j7: columns */
     out[98] = t260 * t251 + (t262 + t201 * t256);
-    const wam7_real_t t263 = t244 * t143 - t243 * t203;
+    const wam7_real_t t263 = t244 * t143 - t243 * t203; /* link j7: velocities by those of the joints */
     const wam7_real_t t264 = t244 * t203 + t243 * t143;
-    const wam7_real_t t265 = t264 * t257;
+    const wam7_real_t t265 = t264 * t257; /* link j7: columns */
     out[160] = t263 * t251 + (t265 + t204 * t256);
-    const wam7_real_t t266 = t243 * t206 + t244 * t146;
+    const wam7_real_t t266 = t243 * t206 + t244 * t146; /* link j7: velocities by those of the joints */
     const wam7_real_t t267 = t243 * t146 - t244 * t206;
-    const wam7_real_t t268 = t267 * t257;
+    const wam7_real_t t268 = t267 * t257; /* link j7: columns */
     out[222] = t266 * t251 + (t268 + t207 * t256);
-    const wam7_real_t t269 = t243 * t209;
+    const wam7_real_t t269 = t243 * t209; /* link j7: velocities by those of the joints */
     const wam7_real_t t270 = t244 * t209;
-    const wam7_real_t t271 = t270 * t257;
+    const wam7_real_t t271 = t270 * t257; /* link j7: columns */
     out[284] = t271 + t210 * t256 - t269 * t251;
+    /* link j7: velocities by those of the joints */
     const wam7_real_t t272 = WAM7_C(0.4469713223199599) * t244;
     const wam7_real_t t273 = WAM7_C(0.4469713223199599) * t243;
-    const wam7_real_t t274 = t273 * t257;
+    const wam7_real_t t274 = t273 * t257; /* link j7: columns */
     out[346] = t272 * t251 + t274;
     out[408] = WAM7_C(0.4998450480351091) * t255;
     const wam7_real_t t275 = t250 + t251;
-    const wam7_real_t t276 = t243 * t223 + t244 * t212;
-    const wam7_real_t t277 = t257 + (t257 - t276);
-    const wam7_real_t t278 = t253 * t254;
+    const wam7_real_t t276 = t243 * t223 + t244 * t212; /* link j7: motion */
+    const wam7_real_t t277 = t257 + (t257 - t276); /* link j7: columns */
+    const wam7_real_t t278 = t253 * t254; /* link j7: motion */
     const wam7_real_t t279 = t246 * t248;
-    const wam7_real_t t280 = t278 - t279;
+    const wam7_real_t t280 = t278 - t279; /* link j7: columns */
     out[37] = t258 * t275 + t252 * t277 + t196 * t280;
     out[99] = t261 * t275 - t260 * t277 + t201 * t280;
     out[161] = t204 * t280 - (t263 * t277 - t264 * t275);
@@ -497,10 +516,10 @@ int wam7_slotine_li_regressor(
     out[285] = t270 * t275 + t269 * t277 + t210 * t280;
     out[347] = t273 * t275 - t272 * t277;
     out[409] = WAM7_C(0.9996900960702182) * t280;
-    const wam7_real_t t281 = ddq_r[6] + t214;
-    const wam7_real_t t282 = t281 - t256;
-    const wam7_real_t t283 = t249 * t247;
-    const wam7_real_t t284 = t283 - t278;
+    const wam7_real_t t281 = ddq_r[6] + t214; /* link j7: motion */
+    const wam7_real_t t282 = t281 - t256; /* link j7: columns */
+    const wam7_real_t t283 = t249 * t247; /* link j7: motion */
+    const wam7_real_t t284 = t283 - t278; /* link j7: columns */
     out[38] = t196 * t245 - t252 * t282 + t258 * t284;
     out[100] = t260 * t282 + t201 * t245 + t261 * t284;
     out[162] = t263 * t282 + t204 * t245 + t264 * t284;
@@ -531,7 +550,8 @@ int wam7_slotine_li_regressor(
     const wam7_real_t t291 = t123 * t289 + t122 * t290;
     const wam7_real_t t292 = t183 * t288 + t184 * t277;
     const wam7_real_t t293 = t122 * t289 - t123 * t290;
-    const wam7_real_t t294 = t244 * t239 + t243 * t169;
+    const wam7_real_t t294 = t244 * t239 + t243 * t169; /* link j7: motion */
+    /* link j7: columns */
     const wam7_real_t t295 = t164 * t292 - t163 * t291 - t166 * t293 + (t258 * t230 + t196 * t294);
     out[41] = t295;
     const wam7_real_t t296 = t173 * t292 - t172 * t291 - t174 * t293 + (t261 * t230 + t201 * t294);
@@ -550,7 +570,8 @@ int wam7_slotine_li_regressor(
     const wam7_real_t t302 = t123 * t300 + t122 * t301;
     const wam7_real_t t303 = t183 * t299 + t184 * t275;
     const wam7_real_t t304 = t122 * t300 - t123 * t301;
-    const wam7_real_t t305 = t243 * t239 - t244 * t169;
+    const wam7_real_t t305 = t243 * t239 - t244 * t169; /* link j7: motion */
+    /* link j7: columns */
     const wam7_real_t t306 = t164 * t303 - t163 * t302 - t166 * t304 + (t252 * t230 + t196 * t305);
     out[42] = t306;
     const wam7_real_t t307 = t173 * t303 - t172 * t302 - t174 * t304 + (t201 * t305 - t260 * t230);
@@ -563,29 +584,29 @@ int wam7_slotine_li_regressor(
     out[352] = -(t272 * t230);
     out[414] = WAM7_C(0.9996900960702182) * t305;
     out[43] = WAM7_C(91.90371991247264) * dq[0];
-    const wam7_real_t t309 = wam7_sign(dq[0]);
+    const wam7_real_t t309 = wam7_sign(dq[0]); /* joint j1: coulomb_friction */
     out[44] = WAM7_C(2.1881838074398248) * t309;
     out[107] = WAM7_C(61.81619256017505) * dq[1];
-    const wam7_real_t t310 = wam7_sign(dq[1]);
+    const wam7_real_t t310 = wam7_sign(dq[1]); /* joint j2: coulomb_friction */
     out[108] = WAM7_C(2.1881838074398248) * t310;
     out[171] = WAM7_C(61.81619256017505) * dq[2];
-    const wam7_real_t t311 = wam7_sign(dq[2]);
+    const wam7_real_t t311 = wam7_sign(dq[2]); /* joint j3: coulomb_friction */
     out[172] = WAM7_C(2.1881838074398248) * t311;
     out[173] = WAM7_C(61.81619256017505) * ddq_r[2];
     out[236] = WAM7_C(39.387308533916844) * dq[3];
-    const wam7_real_t t312 = wam7_sign(dq[3]);
+    const wam7_real_t t312 = wam7_sign(dq[3]); /* joint j4: coulomb_friction */
     out[237] = WAM7_C(2.1881838074398248) * t312;
     out[238] = WAM7_C(39.387308533916844) * ddq_r[3];
     out[301] = WAM7_C(40.16949152542373) * dq[4];
-    const wam7_real_t t313 = wam7_sign(dq[4]);
+    const wam7_real_t t313 = wam7_sign(dq[4]); /* joint j5: coulomb_friction */
     out[302] = WAM7_C(4.237288135593221) * t313;
     out[303] = WAM7_C(40.16949152542373) * ddq_r[4];
     out[366] = WAM7_C(40.16949152542373) * dq[5];
-    const wam7_real_t t314 = wam7_sign(dq[5]);
+    const wam7_real_t t314 = wam7_sign(dq[5]); /* joint j6: coulomb_friction */
     out[367] = WAM7_C(4.237288135593221) * t314;
     out[368] = WAM7_C(40.16949152542373) * ddq_r[5];
     out[431] = WAM7_C(222.83582089552237) * dq[6];
-    const wam7_real_t t315 = wam7_sign(dq[6]);
+    const wam7_real_t t315 = wam7_sign(dq[6]); /* joint j7: coulomb_friction */
     out[432] = WAM7_C(14.925373134328357) * t315;
     out[433] = WAM7_C(222.83582089552237) * ddq_r[6];
     /* always zero */

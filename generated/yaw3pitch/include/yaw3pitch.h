@@ -12,7 +12,8 @@
  *
  * Every function returns YAW3PITCH_STATUS_OK, or the sum of the YAW3PITCH_STATUS_ bits that apply; all of
  * its outputs are then zero. Inputs are checked by their Euclidean norm, so one that is not finite is
- * found too (not with -ffast-math). Outputs may not overlap inputs. Matrices are row-major.
+ * found too (not with -ffast-math). Outputs may not overlap inputs. Matrices are row-major. In the sources a
+ * remark behind a value says which link or joint it belongs to, and those after it up to the next remark.
  *
  * Coordinates:
  *
@@ -50,7 +51,7 @@
 #define YAW3PITCH_H
 
 /** Number of this generation: header and sources of different ones do not compile together. */
-#define YAW3PITCH_GENERATION 0x7BB9A1E4UL
+#define YAW3PITCH_GENERATION 0x14CEE2C4UL
 
 /** SHA-256 of the description that this is the model of, then after a blank the description's version, if any. */
 #define YAW3PITCH_MODEL "839ceb1d876030e9f1e9ebe843a695b9ac89cde5dc1ab9d51167fc98b5e5466f"
@@ -102,6 +103,8 @@
 #define yaw3pitch_forward_dynamics_derivatives yaw3pitch_forward_dynamics_derivatives_float
 #define yaw3pitch_inverse_dynamics_derivatives_standard yaw3pitch_inverse_dynamics_derivatives_standard_float
 #define yaw3pitch_forward_dynamics_derivatives_standard yaw3pitch_forward_dynamics_derivatives_standard_float
+#define yaw3pitch_momentum_observer_step yaw3pitch_momentum_observer_step_float
+#define yaw3pitch_momentum_observer_step_standard yaw3pitch_momentum_observer_step_standard_float
 #define yaw3pitch_check_parameters yaw3pitch_check_parameters_float
 #define yaw3pitch_check_parameters_standard yaw3pitch_check_parameters_standard_float
 #define yaw3pitch_model yaw3pitch_model_float
@@ -121,11 +124,16 @@ typedef YAW3PITCH_REAL yaw3pitch_real_t;
 #define YAW3PITCH_N_PARAMETERS           22  /**< base parameters */
 #define YAW3PITCH_N_STANDARD_PARAMETERS  40  /**< standard parameters */
 #define YAW3PITCH_N_PACKED               64  /**< structural non-zeros of the regressor */
+#define YAW3PITCH_N_OBSERVER_STATES      4   /**< state of the observer: the momentum that the model
+                                             expects */
 
-#define YAW3PITCH_STATUS_OK     0
-#define YAW3PITCH_STATUS_STROKE 1 /**< a lever would leave its stroke */
-#define YAW3PITCH_STATUS_PIVOT  2 /**< a pivot of the mass matrix vanishes, or the result is beyond 1e15 */
-#define YAW3PITCH_STATUS_INPUT  4 /**< an input is not finite or beyond its bound */
+/** YAW3PITCH_STATUS_OK or bits of the others. */
+typedef unsigned int yaw3pitch_status_t;
+
+#define YAW3PITCH_STATUS_OK     0U
+#define YAW3PITCH_STATUS_STROKE 1U /**< a lever would leave its stroke */
+#define YAW3PITCH_STATUS_PIVOT  2U /**< a pivot of the mass matrix vanishes, or the result is beyond 1e15 */
+#define YAW3PITCH_STATUS_INPUT  4U /**< an input is not finite or beyond its bound */
 
 /** Indices of the base parameters. */
 enum {
@@ -215,7 +223,7 @@ const char *yaw3pitch_model(void);
  *
  * @return YAW3PITCH_STATUS_OK or YAW3PITCH_STATUS_INPUT
  */
-int yaw3pitch_check_parameters(const yaw3pitch_real_t parameters[YAW3PITCH_N_PARAMETERS]);
+yaw3pitch_status_t yaw3pitch_check_parameters(const yaw3pitch_real_t parameters[YAW3PITCH_N_PARAMETERS]);
 
 /**
  * Whether standard parameters can be used: finite, and their norm within its bound. Every function that takes them checks
@@ -223,7 +231,7 @@ int yaw3pitch_check_parameters(const yaw3pitch_real_t parameters[YAW3PITCH_N_PAR
  *
  * @return YAW3PITCH_STATUS_OK or YAW3PITCH_STATUS_INPUT
  */
-int yaw3pitch_check_parameters_standard(const yaw3pitch_real_t parameters[YAW3PITCH_N_STANDARD_PARAMETERS]);
+yaw3pitch_status_t yaw3pitch_check_parameters_standard(const yaw3pitch_real_t parameters[YAW3PITCH_N_STANDARD_PARAMETERS]);
 
 /**
  * Inputs that give the accelerations ddq in the state q, dq; base parameters.
@@ -237,7 +245,7 @@ int yaw3pitch_check_parameters_standard(const yaw3pitch_real_t parameters[YAW3PI
  *
  * Operations: 280 (149 mul, 131 add, 0 neg), 6 trig.
  */
-int yaw3pitch_inverse_dynamics(
+yaw3pitch_status_t yaw3pitch_inverse_dynamics(
     const yaw3pitch_real_t q[YAW3PITCH_N_JOINTS],
     const yaw3pitch_real_t dq[YAW3PITCH_N_JOINTS],
     const yaw3pitch_real_t ddq[YAW3PITCH_N_JOINTS],
@@ -254,7 +262,7 @@ int yaw3pitch_inverse_dynamics(
  *
  * Operations: 25 (16 mul, 9 add, 0 neg), 6 trig.
  */
-int yaw3pitch_gravity(
+yaw3pitch_status_t yaw3pitch_gravity(
     const yaw3pitch_real_t q[YAW3PITCH_N_JOINTS],
     const yaw3pitch_real_t parameters[YAW3PITCH_N_PARAMETERS],
     yaw3pitch_real_t out[YAW3PITCH_N_JOINTS]);
@@ -270,7 +278,7 @@ int yaw3pitch_gravity(
  *
  * Operations: 230 (132 mul, 98 add, 0 neg), 6 trig.
  */
-int yaw3pitch_bias(
+yaw3pitch_status_t yaw3pitch_bias(
     const yaw3pitch_real_t q[YAW3PITCH_N_JOINTS],
     const yaw3pitch_real_t dq[YAW3PITCH_N_JOINTS],
     const yaw3pitch_real_t parameters[YAW3PITCH_N_PARAMETERS],
@@ -286,7 +294,7 @@ int yaw3pitch_bias(
  *
  * Operations: 103 (52 mul, 51 add, 0 neg), 6 trig.
  */
-int yaw3pitch_mass_matrix(
+yaw3pitch_status_t yaw3pitch_mass_matrix(
     const yaw3pitch_real_t q[YAW3PITCH_N_JOINTS],
     const yaw3pitch_real_t parameters[YAW3PITCH_N_PARAMETERS],
     yaw3pitch_real_t out[YAW3PITCH_N_JOINTS * YAW3PITCH_N_JOINTS]);
@@ -304,7 +312,7 @@ int yaw3pitch_mass_matrix(
  *
  * Operations: 397 (219 mul, 178 add, 0 neg), 4 div, 6 trig.
  */
-int yaw3pitch_forward_dynamics(
+yaw3pitch_status_t yaw3pitch_forward_dynamics(
     const yaw3pitch_real_t q[YAW3PITCH_N_JOINTS],
     const yaw3pitch_real_t dq[YAW3PITCH_N_JOINTS],
     const yaw3pitch_real_t input[YAW3PITCH_N_JOINTS],
@@ -323,7 +331,7 @@ int yaw3pitch_forward_dynamics(
  *
  * Operations: 146 (92 mul, 54 add, 0 neg), 6 trig.
  */
-int yaw3pitch_energy(
+yaw3pitch_status_t yaw3pitch_energy(
     const yaw3pitch_real_t q[YAW3PITCH_N_JOINTS],
     const yaw3pitch_real_t dq[YAW3PITCH_N_JOINTS],
     const yaw3pitch_real_t parameters[YAW3PITCH_N_PARAMETERS],
@@ -342,7 +350,7 @@ int yaw3pitch_energy(
  *
  * Operations: 216 (120 mul, 90 add, 6 neg), 6 trig.
  */
-int yaw3pitch_regressor(
+yaw3pitch_status_t yaw3pitch_regressor(
     const yaw3pitch_real_t q[YAW3PITCH_N_JOINTS],
     const yaw3pitch_real_t dq[YAW3PITCH_N_JOINTS],
     const yaw3pitch_real_t ddq[YAW3PITCH_N_JOINTS],
@@ -360,7 +368,7 @@ int yaw3pitch_regressor(
  *
  * Operations: 241 (135 mul, 98 add, 8 neg), 6 trig.
  */
-int yaw3pitch_regressor_standard(
+yaw3pitch_status_t yaw3pitch_regressor_standard(
     const yaw3pitch_real_t q[YAW3PITCH_N_JOINTS],
     const yaw3pitch_real_t dq[YAW3PITCH_N_JOINTS],
     const yaw3pitch_real_t ddq[YAW3PITCH_N_JOINTS],
@@ -377,7 +385,7 @@ int yaw3pitch_regressor_standard(
  *
  * Operations: 216 (120 mul, 90 add, 6 neg), 6 trig.
  */
-int yaw3pitch_regressor_packed(
+yaw3pitch_status_t yaw3pitch_regressor_packed(
     const yaw3pitch_real_t q[YAW3PITCH_N_JOINTS],
     const yaw3pitch_real_t dq[YAW3PITCH_N_JOINTS],
     const yaw3pitch_real_t ddq[YAW3PITCH_N_JOINTS],
@@ -397,7 +405,7 @@ int yaw3pitch_regressor_packed(
  *
  * Operations: 245 (144 mul, 101 add, 0 neg), 6 trig.
  */
-int yaw3pitch_slotine_li_regressor(
+yaw3pitch_status_t yaw3pitch_slotine_li_regressor(
     const yaw3pitch_real_t q[YAW3PITCH_N_JOINTS],
     const yaw3pitch_real_t dq[YAW3PITCH_N_JOINTS],
     const yaw3pitch_real_t dq_r[YAW3PITCH_N_JOINTS],
@@ -416,7 +424,7 @@ int yaw3pitch_slotine_li_regressor(
  *
  * Operations: 335 (172 mul, 163 add, 0 neg), 6 trig.
  */
-int yaw3pitch_inverse_dynamics_standard(
+yaw3pitch_status_t yaw3pitch_inverse_dynamics_standard(
     const yaw3pitch_real_t q[YAW3PITCH_N_JOINTS],
     const yaw3pitch_real_t dq[YAW3PITCH_N_JOINTS],
     const yaw3pitch_real_t ddq[YAW3PITCH_N_JOINTS],
@@ -433,7 +441,7 @@ int yaw3pitch_inverse_dynamics_standard(
  *
  * Operations: 69 (44 mul, 25 add, 0 neg), 6 trig.
  */
-int yaw3pitch_gravity_standard(
+yaw3pitch_status_t yaw3pitch_gravity_standard(
     const yaw3pitch_real_t q[YAW3PITCH_N_JOINTS],
     const yaw3pitch_real_t parameters[YAW3PITCH_N_STANDARD_PARAMETERS],
     yaw3pitch_real_t out[YAW3PITCH_N_JOINTS]);
@@ -449,7 +457,7 @@ int yaw3pitch_gravity_standard(
  *
  * Operations: 275 (150 mul, 125 add, 0 neg), 6 trig.
  */
-int yaw3pitch_bias_standard(
+yaw3pitch_status_t yaw3pitch_bias_standard(
     const yaw3pitch_real_t q[YAW3PITCH_N_JOINTS],
     const yaw3pitch_real_t dq[YAW3PITCH_N_JOINTS],
     const yaw3pitch_real_t parameters[YAW3PITCH_N_STANDARD_PARAMETERS],
@@ -465,7 +473,7 @@ int yaw3pitch_bias_standard(
  *
  * Operations: 125 (60 mul, 65 add, 0 neg), 6 trig.
  */
-int yaw3pitch_mass_matrix_standard(
+yaw3pitch_status_t yaw3pitch_mass_matrix_standard(
     const yaw3pitch_real_t q[YAW3PITCH_N_JOINTS],
     const yaw3pitch_real_t parameters[YAW3PITCH_N_STANDARD_PARAMETERS],
     yaw3pitch_real_t out[YAW3PITCH_N_JOINTS * YAW3PITCH_N_JOINTS]);
@@ -483,7 +491,7 @@ int yaw3pitch_mass_matrix_standard(
  *
  * Operations: 463 (245 mul, 218 add, 0 neg), 4 div, 6 trig.
  */
-int yaw3pitch_forward_dynamics_standard(
+yaw3pitch_status_t yaw3pitch_forward_dynamics_standard(
     const yaw3pitch_real_t q[YAW3PITCH_N_JOINTS],
     const yaw3pitch_real_t dq[YAW3PITCH_N_JOINTS],
     const yaw3pitch_real_t input[YAW3PITCH_N_JOINTS],
@@ -502,7 +510,7 @@ int yaw3pitch_forward_dynamics_standard(
  *
  * Operations: 193 (118 mul, 75 add, 0 neg), 6 trig.
  */
-int yaw3pitch_energy_standard(
+yaw3pitch_status_t yaw3pitch_energy_standard(
     const yaw3pitch_real_t q[YAW3PITCH_N_JOINTS],
     const yaw3pitch_real_t dq[YAW3PITCH_N_JOINTS],
     const yaw3pitch_real_t parameters[YAW3PITCH_N_STANDARD_PARAMETERS],
@@ -522,7 +530,7 @@ int yaw3pitch_energy_standard(
  *
  * Operations: 64 (36 mul, 18 add, 10 neg), 8 trig.
  */
-int yaw3pitch_forward_kinematics(
+yaw3pitch_status_t yaw3pitch_forward_kinematics(
     const yaw3pitch_real_t q[YAW3PITCH_N_JOINTS],
     yaw3pitch_real_t out[16 * YAW3PITCH_N_LINKS]);
 
@@ -535,7 +543,7 @@ int yaw3pitch_forward_kinematics(
  *
  * Operations: 43 (26 mul, 14 add, 3 neg), 6 trig.
  */
-int yaw3pitch_jacobian(
+yaw3pitch_status_t yaw3pitch_jacobian(
     const yaw3pitch_real_t q[YAW3PITCH_N_JOINTS],
     yaw3pitch_real_t out[6 * YAW3PITCH_N_JOINTS]);
 
@@ -552,7 +560,7 @@ int yaw3pitch_jacobian(
  *
  * Operations: 0 (0 mul, 0 add, 0 neg).
  */
-int yaw3pitch_motor_from_joint(
+yaw3pitch_status_t yaw3pitch_motor_from_joint(
     const yaw3pitch_real_t q[YAW3PITCH_N_JOINTS],
     const yaw3pitch_real_t dq[YAW3PITCH_N_JOINTS],
     const yaw3pitch_real_t ddq[YAW3PITCH_N_JOINTS],
@@ -573,7 +581,7 @@ int yaw3pitch_motor_from_joint(
  *
  * Operations: 0 (0 mul, 0 add, 0 neg).
  */
-int yaw3pitch_joint_from_motor(
+yaw3pitch_status_t yaw3pitch_joint_from_motor(
     const yaw3pitch_real_t q_m[YAW3PITCH_N_JOINTS],
     const yaw3pitch_real_t dq_m[YAW3PITCH_N_JOINTS],
     const yaw3pitch_real_t ddq_m[YAW3PITCH_N_JOINTS],
@@ -584,13 +592,13 @@ int yaw3pitch_joint_from_motor(
 /**
  * Joint effort per input.
  *
- * @param[in]   q    [4]  [rad]              joint coordinates; norm at most 10000
- * @param[out]  out  [4]  [(N m) per (N m)]  drive gains K
+ * @param[in]   q    [4]  [rad]          joint coordinates; norm at most 10000
+ * @param[out]  out  [4]  [N m per N m]  drive gains K
  * @return YAW3PITCH_STATUS_OK or status bits
  *
  * Operations: 0 (0 mul, 0 add, 0 neg).
  */
-int yaw3pitch_drive_gain(
+yaw3pitch_status_t yaw3pitch_drive_gain(
     const yaw3pitch_real_t q[YAW3PITCH_N_JOINTS],
     yaw3pitch_real_t out[YAW3PITCH_N_JOINTS]);
 
@@ -598,19 +606,19 @@ int yaw3pitch_drive_gain(
  * Inputs that give the accelerations ddq, and their derivatives; at a kink of a law, as of dry
  * friction at rest, the mean of both sides; base parameters.
  *
- * @param[in]   q             [4]   [rad]                  joint coordinates; norm at most 10000
- * @param[in]   dq            [4]   [rad/s]                joint velocities; norm at most 100000
- * @param[in]   ddq           [4]   [rad/s^2]              joint accelerations; norm at most 1e+08
- * @param[in]   parameters    [22]                         base parameters; norm at most 1e+09
- * @param[out]  input         [4]   [N m]                  inputs: motor currents, efforts where undriven
- * @param[out]  input_by_q    [16]  [(N m) per (rad)]      d input / d q; 4 x 4, row-major
- * @param[out]  input_by_dq   [16]  [(N m) per (rad/s)]    d input / d dq; 4 x 4, row-major
- * @param[out]  input_by_ddq  [16]  [(N m) per (rad/s^2)]  d input / d ddq; 4 x 4, row-major
+ * @param[in]   q             [4]   [rad]                joint coordinates; norm at most 10000
+ * @param[in]   dq            [4]   [rad/s]              joint velocities; norm at most 100000
+ * @param[in]   ddq           [4]   [rad/s^2]            joint accelerations; norm at most 1e+08
+ * @param[in]   parameters    [22]                       base parameters; norm at most 1e+09
+ * @param[out]  input         [4]   [N m]                inputs: motor currents, efforts where undriven
+ * @param[out]  input_by_q    [16]  [N m per rad]        d input / d q; 4 x 4, row-major
+ * @param[out]  input_by_dq   [16]  [N m per (rad/s)]    d input / d dq; 4 x 4, row-major
+ * @param[out]  input_by_ddq  [16]  [N m per (rad/s^2)]  d input / d ddq; 4 x 4, row-major
  * @return YAW3PITCH_STATUS_OK or status bits
  *
  * Operations: 1070 (585 mul, 485 add, 0 neg), 6 trig.
  */
-int yaw3pitch_inverse_dynamics_derivatives(
+yaw3pitch_status_t yaw3pitch_inverse_dynamics_derivatives(
     const yaw3pitch_real_t q[YAW3PITCH_N_JOINTS],
     const yaw3pitch_real_t dq[YAW3PITCH_N_JOINTS],
     const yaw3pitch_real_t ddq[YAW3PITCH_N_JOINTS],
@@ -630,14 +638,14 @@ int yaw3pitch_inverse_dynamics_derivatives(
  *                                                           norm at most 1e+09
  * @param[in]   parameters    [22]                           base parameters; norm at most 1e+09
  * @param[out]  ddq           [4]   [rad/s^2]                joint accelerations
- * @param[out]  ddq_by_q      [16]  [(rad/s^2) per (rad)]    d ddq / d q; 4 x 4, row-major
+ * @param[out]  ddq_by_q      [16]  [(rad/s^2) per rad]      d ddq / d q; 4 x 4, row-major
  * @param[out]  ddq_by_dq     [16]  [(rad/s^2) per (rad/s)]  d ddq / d dq; 4 x 4, row-major
- * @param[out]  ddq_by_input  [16]  [(rad/s^2) per (N m)]    d ddq / d input; 4 x 4, row-major
+ * @param[out]  ddq_by_input  [16]  [(rad/s^2) per N m]      d ddq / d input; 4 x 4, row-major
  * @return YAW3PITCH_STATUS_OK or status bits
  *
  * Operations: 1498 (826 mul, 664 add, 8 neg), 4 div, 6 trig.
  */
-int yaw3pitch_forward_dynamics_derivatives(
+yaw3pitch_status_t yaw3pitch_forward_dynamics_derivatives(
     const yaw3pitch_real_t q[YAW3PITCH_N_JOINTS],
     const yaw3pitch_real_t dq[YAW3PITCH_N_JOINTS],
     const yaw3pitch_real_t input[YAW3PITCH_N_JOINTS],
@@ -651,19 +659,19 @@ int yaw3pitch_forward_dynamics_derivatives(
  * Inputs that give the accelerations ddq, and their derivatives; at a kink of a law, as of dry
  * friction at rest, the mean of both sides; standard parameters.
  *
- * @param[in]   q             [4]   [rad]                  joint coordinates; norm at most 10000
- * @param[in]   dq            [4]   [rad/s]                joint velocities; norm at most 100000
- * @param[in]   ddq           [4]   [rad/s^2]              joint accelerations; norm at most 1e+08
- * @param[in]   parameters    [40]                         standard parameters; norm at most 1e+09
- * @param[out]  input         [4]   [N m]                  inputs: motor currents, efforts where undriven
- * @param[out]  input_by_q    [16]  [(N m) per (rad)]      d input / d q; 4 x 4, row-major
- * @param[out]  input_by_dq   [16]  [(N m) per (rad/s)]    d input / d dq; 4 x 4, row-major
- * @param[out]  input_by_ddq  [16]  [(N m) per (rad/s^2)]  d input / d ddq; 4 x 4, row-major
+ * @param[in]   q             [4]   [rad]                joint coordinates; norm at most 10000
+ * @param[in]   dq            [4]   [rad/s]              joint velocities; norm at most 100000
+ * @param[in]   ddq           [4]   [rad/s^2]            joint accelerations; norm at most 1e+08
+ * @param[in]   parameters    [40]                       standard parameters; norm at most 1e+09
+ * @param[out]  input         [4]   [N m]                inputs: motor currents, efforts where undriven
+ * @param[out]  input_by_q    [16]  [N m per rad]        d input / d q; 4 x 4, row-major
+ * @param[out]  input_by_dq   [16]  [N m per (rad/s)]    d input / d dq; 4 x 4, row-major
+ * @param[out]  input_by_ddq  [16]  [N m per (rad/s^2)]  d input / d ddq; 4 x 4, row-major
  * @return YAW3PITCH_STATUS_OK or status bits
  *
  * Operations: 1215 (645 mul, 570 add, 0 neg), 6 trig.
  */
-int yaw3pitch_inverse_dynamics_derivatives_standard(
+yaw3pitch_status_t yaw3pitch_inverse_dynamics_derivatives_standard(
     const yaw3pitch_real_t q[YAW3PITCH_N_JOINTS],
     const yaw3pitch_real_t dq[YAW3PITCH_N_JOINTS],
     const yaw3pitch_real_t ddq[YAW3PITCH_N_JOINTS],
@@ -683,14 +691,14 @@ int yaw3pitch_inverse_dynamics_derivatives_standard(
  *                                                           norm at most 1e+09
  * @param[in]   parameters    [40]                           standard parameters; norm at most 1e+09
  * @param[out]  ddq           [4]   [rad/s^2]                joint accelerations
- * @param[out]  ddq_by_q      [16]  [(rad/s^2) per (rad)]    d ddq / d q; 4 x 4, row-major
+ * @param[out]  ddq_by_q      [16]  [(rad/s^2) per rad]      d ddq / d q; 4 x 4, row-major
  * @param[out]  ddq_by_dq     [16]  [(rad/s^2) per (rad/s)]  d ddq / d dq; 4 x 4, row-major
- * @param[out]  ddq_by_input  [16]  [(rad/s^2) per (N m)]    d ddq / d input; 4 x 4, row-major
+ * @param[out]  ddq_by_input  [16]  [(rad/s^2) per N m]      d ddq / d input; 4 x 4, row-major
  * @return YAW3PITCH_STATUS_OK or status bits
  *
  * Operations: 1675 (900 mul, 767 add, 8 neg), 4 div, 6 trig.
  */
-int yaw3pitch_forward_dynamics_derivatives_standard(
+yaw3pitch_status_t yaw3pitch_forward_dynamics_derivatives_standard(
     const yaw3pitch_real_t q[YAW3PITCH_N_JOINTS],
     const yaw3pitch_real_t dq[YAW3PITCH_N_JOINTS],
     const yaw3pitch_real_t input[YAW3PITCH_N_JOINTS],
@@ -699,6 +707,66 @@ int yaw3pitch_forward_dynamics_derivatives_standard(
     yaw3pitch_real_t ddq_by_q[YAW3PITCH_N_JOINTS * YAW3PITCH_N_JOINTS],
     yaw3pitch_real_t ddq_by_dq[YAW3PITCH_N_JOINTS * YAW3PITCH_N_JOINTS],
     yaw3pitch_real_t ddq_by_input[YAW3PITCH_N_JOINTS * YAW3PITCH_N_JOINTS]);
+
+/**
+ * External efforts at the joints by the generalised momentum, with a delay of 1 / gain; state: zero at
+ * first, then what the step before gave; base parameters.
+ *
+ * @param[in]   q           [4]   [rad]       joint coordinates; norm at most 10000
+ * @param[in]   dq          [4]   [rad/s]     joint velocities; norm at most 100000
+ * @param[in]   input       [4]   [N m]       inputs: motor currents, efforts where undriven; norm at most
+ *                                            1e+09
+ * @param[in]   dt          [1]   [s]         time step; norm at most 10000
+ * @param[in]   gain        [4]   [1/s]       gains of the observer, gain dt below 1; norm at most 100000
+ * @param[in]   parameters  [22]              base parameters; norm at most 1e+09
+ * @param[in]   state       [4]   [kg m^2/s]  state of the observer: the momentum that the model expects; norm
+ *                                            at most 1e+09
+ * @param[out]  state_next  [4]   [kg m^2/s]  state after the step
+ * @param[out]  external    [4]   [N m]       efforts that act on the arm from outside
+ * @return YAW3PITCH_STATUS_OK or status bits
+ *
+ * Operations: 230 (125 mul, 101 add, 4 neg), 6 trig.
+ */
+yaw3pitch_status_t yaw3pitch_momentum_observer_step(
+    const yaw3pitch_real_t q[YAW3PITCH_N_JOINTS],
+    const yaw3pitch_real_t dq[YAW3PITCH_N_JOINTS],
+    const yaw3pitch_real_t input[YAW3PITCH_N_JOINTS],
+    const yaw3pitch_real_t dt[1],
+    const yaw3pitch_real_t gain[YAW3PITCH_N_JOINTS],
+    const yaw3pitch_real_t parameters[YAW3PITCH_N_PARAMETERS],
+    const yaw3pitch_real_t state[YAW3PITCH_N_OBSERVER_STATES],
+    yaw3pitch_real_t state_next[YAW3PITCH_N_OBSERVER_STATES],
+    yaw3pitch_real_t external[YAW3PITCH_N_JOINTS]);
+
+/**
+ * External efforts at the joints by the generalised momentum, with a delay of 1 / gain; state: zero at
+ * first, then what the step before gave; standard parameters.
+ *
+ * @param[in]   q           [4]   [rad]       joint coordinates; norm at most 10000
+ * @param[in]   dq          [4]   [rad/s]     joint velocities; norm at most 100000
+ * @param[in]   input       [4]   [N m]       inputs: motor currents, efforts where undriven; norm at most
+ *                                            1e+09
+ * @param[in]   dt          [1]   [s]         time step; norm at most 10000
+ * @param[in]   gain        [4]   [1/s]       gains of the observer, gain dt below 1; norm at most 100000
+ * @param[in]   parameters  [40]              standard parameters; norm at most 1e+09
+ * @param[in]   state       [4]   [kg m^2/s]  state of the observer: the momentum that the model expects; norm
+ *                                            at most 1e+09
+ * @param[out]  state_next  [4]   [kg m^2/s]  state after the step
+ * @param[out]  external    [4]   [N m]       efforts that act on the arm from outside
+ * @return YAW3PITCH_STATUS_OK or status bits
+ *
+ * Operations: 311 (171 mul, 136 add, 4 neg), 6 trig.
+ */
+yaw3pitch_status_t yaw3pitch_momentum_observer_step_standard(
+    const yaw3pitch_real_t q[YAW3PITCH_N_JOINTS],
+    const yaw3pitch_real_t dq[YAW3PITCH_N_JOINTS],
+    const yaw3pitch_real_t input[YAW3PITCH_N_JOINTS],
+    const yaw3pitch_real_t dt[1],
+    const yaw3pitch_real_t gain[YAW3PITCH_N_JOINTS],
+    const yaw3pitch_real_t parameters[YAW3PITCH_N_STANDARD_PARAMETERS],
+    const yaw3pitch_real_t state[YAW3PITCH_N_OBSERVER_STATES],
+    yaw3pitch_real_t state_next[YAW3PITCH_N_OBSERVER_STATES],
+    yaw3pitch_real_t external[YAW3PITCH_N_JOINTS]);
 
 #ifdef __cplusplus
 }

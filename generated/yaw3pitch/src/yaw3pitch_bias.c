@@ -47,11 +47,11 @@
  */
 #include "yaw3pitch_private.h"
 
-#if YAW3PITCH_GENERATION != 0x7BB9A1E4UL
+#if YAW3PITCH_GENERATION != 0x14CEE2C4UL
 #error "yaw3pitch.h and yaw3pitch_bias.c are of different generations: generate the arm again"
 #endif
 
-int yaw3pitch_bias(
+yaw3pitch_status_t yaw3pitch_bias(
     const yaw3pitch_real_t q[YAW3PITCH_N_JOINTS],
     const yaw3pitch_real_t dq[YAW3PITCH_N_JOINTS],
     const yaw3pitch_real_t parameters[YAW3PITCH_N_PARAMETERS],
@@ -59,7 +59,7 @@ int yaw3pitch_bias(
 {
     enum { ZZ1R = 0, XX2R, XY2, XZ2R, YZ2, ZZ2R, MX2R, MY2, XX3R, XY3, XZ3R, YZ3, ZZ3R, MX3R, MY3, XX4R, XY4,
         XZ4, YZ4, ZZ4, MX4, MY4 };
-    int status = YAW3PITCH_STATUS_OK;
+    yaw3pitch_status_t status = YAW3PITCH_STATUS_OK;
 
     if (!yaw3pitch_within_joints(q, YAW3PITCH_C(1.0e8))
         || !yaw3pitch_within_joints(dq, YAW3PITCH_C(1.0e10))
@@ -77,87 +77,105 @@ int yaw3pitch_bias(
     YAW3PITCH_SINCOS(q[2], &t5, &t2);
     yaw3pitch_real_t t7, t9;
     YAW3PITCH_SINCOS(q[3], &t7, &t9);
-    const yaw3pitch_real_t t1 = t0 * dq[0];
+    const yaw3pitch_real_t t1 = t0 * dq[0]; /* link j2: motion */
     const yaw3pitch_real_t t4 = t3 * dq[0];
-    const yaw3pitch_real_t t6 = t2 * t1 + t5 * t4;
+    const yaw3pitch_real_t t6 = t2 * t1 + t5 * t4; /* link j3: motion */
     const yaw3pitch_real_t t8 = t2 * t4 - t5 * t1;
-    const yaw3pitch_real_t t10 = t9 * t8 - t7 * t6;
-    const yaw3pitch_real_t t11 = dq[1] + dq[2];
-    const yaw3pitch_real_t t12 = dq[3] + t11;
+    const yaw3pitch_real_t t10 = t9 * t8 - t7 * t6; /* link j4: motion */
+    const yaw3pitch_real_t t11 = dq[1] + dq[2]; /* link j3: motion */
+    const yaw3pitch_real_t t12 = dq[3] + t11; /* link j4: motion */
     const yaw3pitch_real_t t13 = t10 * t12;
     const yaw3pitch_real_t t14 = t9 * t6 + t7 * t8;
     const yaw3pitch_real_t t15 = t14 * t12;
-    const yaw3pitch_real_t t16 = YAW3PITCH_C(-2.0) * t15;
-    const yaw3pitch_real_t t17 = t14 * t10;
+    const yaw3pitch_real_t t16 = YAW3PITCH_C(-2.0) * t15; /* link j4: force and moment */
+    const yaw3pitch_real_t t17 = t14 * t10; /* link j4: motion */
+    /* link j4: force and moment */
     const yaw3pitch_real_t t18 = parameters[XX4R] * t13 + parameters[ZZ4] * t13 + parameters[XY4] * t16
         + parameters[XZ4] * t17;
-    const yaw3pitch_real_t t19 = t10 * t10;
+    const yaw3pitch_real_t t19 = t10 * t10; /* link j4: motion */
     const yaw3pitch_real_t t20 = t12 * t12;
-    const yaw3pitch_real_t t21 = t6 * t11;
-    const yaw3pitch_real_t t22 = dq[1] * t1;
-    const yaw3pitch_real_t t23 = YAW3PITCH_C(1.6) * t22;
-    const yaw3pitch_real_t t24 = t23 + YAW3PITCH_C(1.4) * t21;
+    const yaw3pitch_real_t t21 = t6 * t11; /* link j3: motion */
+    const yaw3pitch_real_t t22 = dq[1] * t1; /* link j2: motion */
+    const yaw3pitch_real_t t23 = YAW3PITCH_C(1.6) * t22; /* link j3: motion */
+    const yaw3pitch_real_t t24 = t23 + YAW3PITCH_C(1.4) * t21; /* link j4: motion */
+    /* link j4: force and moment */
     const yaw3pitch_real_t t25 = t18 + parameters[YZ4] * (t19 - t20) + parameters[MY4] * t24;
     const yaw3pitch_real_t t26 = YAW3PITCH_C(-2.0) * t13;
     const yaw3pitch_real_t t27 = t15 * (parameters[ZZ4] - parameters[XX4R]) + parameters[XY4] * t26
         + parameters[YZ4] * t17;
-    const yaw3pitch_real_t t28 = t14 * t14;
+    const yaw3pitch_real_t t28 = t14 * t14; /* link j4: motion */
+    /* link j4: force and moment */
     const yaw3pitch_real_t t29 = t27 + parameters[XZ4] * (t28 - t20) + parameters[MX4] * t24;
-    const yaw3pitch_real_t t30 = t8 * t11;
-    const yaw3pitch_real_t t31 = YAW3PITCH_C(-2.0) * t21;
-    const yaw3pitch_real_t t32 = t6 * t8;
+    const yaw3pitch_real_t t30 = t8 * t11; /* link j3: motion */
+    const yaw3pitch_real_t t31 = YAW3PITCH_C(-2.0) * t21; /* link j4: motion */
+    const yaw3pitch_real_t t32 = t6 * t8; /* link j3: motion */
+    /* link j3: force and moment */
     const yaw3pitch_real_t t33 = parameters[XX3R] * t30 + parameters[ZZ3R] * t30 + parameters[XY3] * t31
         + parameters[XZ3R] * t32;
-    const yaw3pitch_real_t t34 = t8 * t8;
+    const yaw3pitch_real_t t34 = t8 * t8; /* link j3: motion */
     const yaw3pitch_real_t t35 = t11 * t11;
+    /* link j4: what it passes on */
     const yaw3pitch_real_t t36 = t33 + parameters[YZ3] * (t34 - t35) + parameters[MY3] * t23 + (t9 * t25
         + t7 * t29);
+    /* link j4: force and moment */
     const yaw3pitch_real_t t37 = parameters[MX4] * t16 + parameters[MY4] * t26;
-    const yaw3pitch_real_t t38 = YAW3PITCH_C(-2.0) * t30;
+    const yaw3pitch_real_t t38 = YAW3PITCH_C(-2.0) * t30; /* link j4: motion */
+    /* link j3: force and moment */
     const yaw3pitch_real_t t39 = t21 * (parameters[XX3R] - parameters[ZZ3R]) - parameters[XY3] * t38
         - parameters[YZ3] * t32;
-    const yaw3pitch_real_t t40 = t6 * t6;
+    const yaw3pitch_real_t t40 = t6 * t6; /* link j3: motion */
+    /* link j4: what it passes on */
     const yaw3pitch_real_t t41 = t39 - parameters[XZ3R] * (t40 - t35) - parameters[MX3R] * t23 - (t9 * t29
         - t7 * t25 + YAW3PITCH_C(-0.7) * t37);
-    const yaw3pitch_real_t t42 = dq[1] * t4;
+    const yaw3pitch_real_t t42 = dq[1] * t4; /* link j2: motion */
     const yaw3pitch_real_t t43 = YAW3PITCH_C(-2.0) * t22;
     const yaw3pitch_real_t t44 = t1 * t4;
+    /* link j2: force and moment */
     const yaw3pitch_real_t t45 = parameters[XX2R] * t42 + parameters[ZZ2R] * t42 + parameters[XY2] * t43
         + parameters[XZ2R] * t44;
-    const yaw3pitch_real_t t46 = t4 * t4;
+    const yaw3pitch_real_t t46 = t4 * t4; /* link j2: motion */
     const yaw3pitch_real_t t47 = dq[1] * dq[1];
+    /* link j3: what it passes on */
     const yaw3pitch_real_t t48 = t45 + parameters[YZ2] * (t46 - t47) + (t2 * t36 - t5 * t41);
+    /* link j4: what it passes on */
     const yaw3pitch_real_t t49 = parameters[MX3R] * t31 + parameters[MY3] * t38 + t37;
-    const yaw3pitch_real_t t50 = YAW3PITCH_C(2.0) * t42;
+    const yaw3pitch_real_t t50 = YAW3PITCH_C(2.0) * t42; /* link j2: motion */
+    /* link j2: force and moment */
     const yaw3pitch_real_t t51 = t22 * (parameters[XX2R] - parameters[ZZ2R]) + parameters[XY2] * t50
         - parameters[YZ2] * t44;
-    const yaw3pitch_real_t t52 = t1 * t1;
+    const yaw3pitch_real_t t52 = t1 * t1; /* link j2: motion */
+    /* link j3: what it passes on */
     const yaw3pitch_real_t t53 = t51 + parameters[XZ2R] * (t47 - t52) + (t5 * t36 + t2 * t41
         + YAW3PITCH_C(0.8) * t49);
+    /* link j2: what it passes on */
     const yaw3pitch_real_t t54 = t0 * t48 + t3 * t53 + YAW3PITCH_C(0.12) * (parameters[MX2R] * t43
         - parameters[MY2] * t50 + t49);
     out[0] = t54;
-    const yaw3pitch_real_t t55 = YAW3PITCH_C(0.12) * (dq[0] * dq[0]);
+    const yaw3pitch_real_t t55 = YAW3PITCH_C(0.12) * (dq[0] * dq[0]); /* link j2: motion */
     const yaw3pitch_real_t t56 = t3 * t55 + YAW3PITCH_C(-9.81) * t0;
-    const yaw3pitch_real_t t57 = t56 + YAW3PITCH_C(0.8) * (t46 + t47);
-    const yaw3pitch_real_t t58 = t0 * t55 + YAW3PITCH_C(9.81) * t3;
-    const yaw3pitch_real_t t59 = t58 + YAW3PITCH_C(0.8) * t44;
+    const yaw3pitch_real_t t57 = t56 + YAW3PITCH_C(0.8) * (t46 + t47); /* link j3: motion */
+    const yaw3pitch_real_t t58 = t0 * t55 + YAW3PITCH_C(9.81) * t3; /* link j2: motion */
+    const yaw3pitch_real_t t59 = t58 + YAW3PITCH_C(0.8) * t44; /* link j3: motion */
     const yaw3pitch_real_t t60 = t2 * t57 - t5 * t59;
-    const yaw3pitch_real_t t61 = t34 + t35;
+    const yaw3pitch_real_t t61 = t34 + t35; /* link j4: motion */
     const yaw3pitch_real_t t62 = t60 + YAW3PITCH_C(0.7) * t61;
-    const yaw3pitch_real_t t63 = t5 * t57 + t2 * t59;
-    const yaw3pitch_real_t t64 = t63 - YAW3PITCH_C(-0.7) * t32;
+    const yaw3pitch_real_t t63 = t5 * t57 + t2 * t59; /* link j3: motion */
+    const yaw3pitch_real_t t64 = t63 - YAW3PITCH_C(-0.7) * t32; /* link j4: motion */
+    /* link j4: force and moment */
     const yaw3pitch_real_t t65 = parameters[MX4] * (t7 * t62 + t9 * t64) + parameters[MY4] * (t9 * t62
         - t7 * t64);
     const yaw3pitch_real_t t66 = parameters[XY4] * (t28 - t19) - parameters[XX4R] * t17 + t65;
     const yaw3pitch_real_t t67 = parameters[MY4] * t17 - parameters[MX4] * (t19 + t20);
     const yaw3pitch_real_t t68 = parameters[MY4] * (t28 + t20) - parameters[MX4] * t17;
-    const yaw3pitch_real_t t69 = t7 * t67 - t9 * t68;
+    const yaw3pitch_real_t t69 = t7 * t67 - t9 * t68; /* link j4: what it passes on */
+    /* link j3: force and moment */
     const yaw3pitch_real_t t70 = parameters[XY3] * (t40 - t34) - parameters[XX3R] * t32
         + (parameters[MX3R] * t63 + parameters[MY3] * t60);
-    const yaw3pitch_real_t t71 = t70 + (t66 + YAW3PITCH_C(0.7) * t69);
+    const yaw3pitch_real_t t71 = t70 + (t66 + YAW3PITCH_C(0.7) * t69); /* link j4: what it passes on */
     const yaw3pitch_real_t t72 = parameters[MY3] * t32 - parameters[MX3R] * t61 + (t9 * t67 + t7 * t68);
+    /* link j3: what it passes on */
     const yaw3pitch_real_t t73 = t2 * (parameters[MX3R] * t32 - parameters[MY3] * (t40 + t35) + t69);
+    /* link j2: force and moment */
     const yaw3pitch_real_t t74 = parameters[XY2] * (t52 - t46) - parameters[XX2R] * t44
         + (parameters[MX2R] * t58 + parameters[MY2] * t56);
     out[1] = t74 + (t71 + YAW3PITCH_C(0.8) * (t5 * t72 + t73));

@@ -65,11 +65,11 @@
  */
 #include "yaw3pitch_private.h"
 
-#if YAW3PITCH_GENERATION != 0x7BB9A1E4UL
+#if YAW3PITCH_GENERATION != 0x14CEE2C4UL
 #error "yaw3pitch.h and yaw3pitch_bias_standard.c are of different generations: generate the arm again"
 #endif
 
-int yaw3pitch_bias_standard(
+yaw3pitch_status_t yaw3pitch_bias_standard(
     const yaw3pitch_real_t q[YAW3PITCH_N_JOINTS],
     const yaw3pitch_real_t dq[YAW3PITCH_N_JOINTS],
     const yaw3pitch_real_t parameters[YAW3PITCH_N_STANDARD_PARAMETERS],
@@ -78,7 +78,7 @@ int yaw3pitch_bias_standard(
     enum { XX1 = 0, XY1, XZ1, YY1, YZ1, ZZ1, MX1, MY1, MZ1, M1, XX2, XY2, XZ2, YY2, YZ2, ZZ2, MX2, MY2, MZ2,
         M2, XX3, XY3, XZ3, YY3, YZ3, ZZ3, MX3, MY3, MZ3, M3, XX4, XY4, XZ4, YY4, YZ4, ZZ4, MX4, MY4, MZ4, M4
         };
-    int status = YAW3PITCH_STATUS_OK;
+    yaw3pitch_status_t status = YAW3PITCH_STATUS_OK;
 
     if (!yaw3pitch_within_joints(q, YAW3PITCH_C(1.0e8))
         || !yaw3pitch_within_joints(dq, YAW3PITCH_C(1.0e10))
@@ -96,104 +96,125 @@ int yaw3pitch_bias_standard(
     YAW3PITCH_SINCOS(q[2], &t5, &t2);
     yaw3pitch_real_t t7, t9;
     YAW3PITCH_SINCOS(q[3], &t7, &t9);
-    const yaw3pitch_real_t t1 = t0 * dq[0];
+    const yaw3pitch_real_t t1 = t0 * dq[0]; /* link j2: motion */
     const yaw3pitch_real_t t4 = t3 * dq[0];
-    const yaw3pitch_real_t t6 = t2 * t1 + t5 * t4;
+    const yaw3pitch_real_t t6 = t2 * t1 + t5 * t4; /* link j3: motion */
     const yaw3pitch_real_t t8 = t5 * t1 - t2 * t4;
-    const yaw3pitch_real_t t10 = t7 * t6 + t9 * t8;
-    const yaw3pitch_real_t t11 = dq[1] + dq[2];
-    const yaw3pitch_real_t t12 = dq[3] + t11;
+    const yaw3pitch_real_t t10 = t7 * t6 + t9 * t8; /* link j4: motion */
+    const yaw3pitch_real_t t11 = dq[1] + dq[2]; /* link j3: motion */
+    const yaw3pitch_real_t t12 = dq[3] + t11; /* link j4: motion */
     const yaw3pitch_real_t t13 = t12 * t10;
     const yaw3pitch_real_t t14 = t9 * t6 - t7 * t8;
     const yaw3pitch_real_t t15 = t12 * t14;
-    const yaw3pitch_real_t t16 = YAW3PITCH_C(-2.0) * t15;
+    const yaw3pitch_real_t t16 = YAW3PITCH_C(-2.0) * t15; /* link j4: force and moment */
     const yaw3pitch_real_t t17 = t13 * (parameters[YY4] - parameters[ZZ4]) - parameters[XX4] * t13
         + parameters[XY4] * t16;
-    const yaw3pitch_real_t t18 = t14 * t10;
+    const yaw3pitch_real_t t18 = t14 * t10; /* link j4: motion */
     const yaw3pitch_real_t t19 = t10 * t10;
     const yaw3pitch_real_t t20 = t12 * t12;
-    const yaw3pitch_real_t t21 = YAW3PITCH_C(-0.12) * (dq[0] * dq[0]);
+    const yaw3pitch_real_t t21 = YAW3PITCH_C(-0.12) * (dq[0] * dq[0]); /* link j2: motion */
     const yaw3pitch_real_t t22 = t3 * t21 + YAW3PITCH_C(9.81) * t0;
     const yaw3pitch_real_t t23 = t4 * t4;
     const yaw3pitch_real_t t24 = dq[1] * dq[1];
-    const yaw3pitch_real_t t25 = YAW3PITCH_C(0.8) * (t23 + t24) - t22;
-    const yaw3pitch_real_t t26 = t0 * t21 + YAW3PITCH_C(-9.81) * t3;
+    const yaw3pitch_real_t t25 = YAW3PITCH_C(0.8) * (t23 + t24) - t22; /* link j3: motion */
+    const yaw3pitch_real_t t26 = t0 * t21 + YAW3PITCH_C(-9.81) * t3; /* link j2: motion */
     const yaw3pitch_real_t t27 = t1 * t4;
-    const yaw3pitch_real_t t28 = t26 + YAW3PITCH_C(-0.8) * t27;
+    const yaw3pitch_real_t t28 = t26 + YAW3PITCH_C(-0.8) * t27; /* link j3: motion */
     const yaw3pitch_real_t t29 = t2 * t25 + t5 * t28;
     const yaw3pitch_real_t t30 = t8 * t8;
     const yaw3pitch_real_t t31 = t11 * t11;
-    const yaw3pitch_real_t t32 = t31 + t30;
+    const yaw3pitch_real_t t32 = t31 + t30; /* link j4: motion */
     const yaw3pitch_real_t t33 = t29 + YAW3PITCH_C(0.7) * t32;
-    const yaw3pitch_real_t t34 = t2 * t28 - t5 * t25;
+    const yaw3pitch_real_t t34 = t2 * t28 - t5 * t25; /* link j3: motion */
     const yaw3pitch_real_t t35 = t6 * t8;
-    const yaw3pitch_real_t t36 = t34 + YAW3PITCH_C(0.7) * t35;
+    const yaw3pitch_real_t t36 = t34 + YAW3PITCH_C(0.7) * t35; /* link j4: motion */
     const yaw3pitch_real_t t37 = t7 * t33 - t9 * t36;
-    const yaw3pitch_real_t t38 = t11 * t6;
-    const yaw3pitch_real_t t39 = dq[1] * t1;
-    const yaw3pitch_real_t t40 = YAW3PITCH_C(1.6) * t39;
-    const yaw3pitch_real_t t41 = t40 + YAW3PITCH_C(1.4) * t38;
+    const yaw3pitch_real_t t38 = t11 * t6; /* link j3: motion */
+    const yaw3pitch_real_t t39 = dq[1] * t1; /* link j2: motion */
+    const yaw3pitch_real_t t40 = YAW3PITCH_C(1.6) * t39; /* link j3: motion */
+    const yaw3pitch_real_t t41 = t40 + YAW3PITCH_C(1.4) * t38; /* link j4: motion */
+    /* link j4: force and moment */
     const yaw3pitch_real_t t42 = t17 - parameters[XZ4] * t18 + parameters[YZ4] * (t19 - t20)
         + (parameters[MY4] * t41 - parameters[MZ4] * t37);
     const yaw3pitch_real_t t43 = YAW3PITCH_C(2.0) * t13;
     const yaw3pitch_real_t t44 = parameters[YY4] * t15 + t15 * (parameters[ZZ4] - parameters[XX4])
         + parameters[XY4] * t43;
-    const yaw3pitch_real_t t45 = t14 * t14;
+    const yaw3pitch_real_t t45 = t14 * t14; /* link j4: motion */
     const yaw3pitch_real_t t46 = t9 * t33 + t7 * t36;
+    /* link j4: force and moment */
     const yaw3pitch_real_t t47 = t44 - parameters[YZ4] * t18 + parameters[XZ4] * (t45 - t20)
         + (parameters[MZ4] * t46 + parameters[MX4] * t41);
-    const yaw3pitch_real_t t48 = t11 * t8;
-    const yaw3pitch_real_t t49 = YAW3PITCH_C(-2.0) * t38;
+    const yaw3pitch_real_t t48 = t11 * t8; /* link j3: motion */
+    const yaw3pitch_real_t t49 = YAW3PITCH_C(-2.0) * t38; /* link j4: motion */
+    /* link j3: force and moment */
     const yaw3pitch_real_t t50 = t48 * (parameters[YY3] - parameters[ZZ3]) - parameters[XX3] * t48
         + parameters[XY3] * t49;
     const yaw3pitch_real_t t51 = t50 - parameters[XZ3] * t35 + parameters[YZ3] * (t30 - t31)
         + (parameters[MY3] * t40 + parameters[MZ3] * t34);
-    const yaw3pitch_real_t t52 = t51 + (t9 * t42 + t7 * t47);
+    const yaw3pitch_real_t t52 = t51 + (t9 * t42 + t7 * t47); /* link j4: what it passes on */
+    /* link j4: force and moment */
     const yaw3pitch_real_t t53 = parameters[MX4] * t16 + parameters[MY4] * t43 + parameters[MZ4] * (t45
         + t19);
     const yaw3pitch_real_t t54 = t53 - parameters[M4] * t41;
-    const yaw3pitch_real_t t55 = YAW3PITCH_C(2.0) * t48;
+    const yaw3pitch_real_t t55 = YAW3PITCH_C(2.0) * t48; /* link j4: motion */
+    /* link j3: force and moment */
     const yaw3pitch_real_t t56 = parameters[YY3] * t38 - t38 * (parameters[XX3] - parameters[ZZ3])
         + parameters[XY3] * t55;
-    const yaw3pitch_real_t t57 = t6 * t6;
+    const yaw3pitch_real_t t57 = t6 * t6; /* link j3: motion */
+    /* link j3: force and moment */
     const yaw3pitch_real_t t58 = t56 - parameters[YZ3] * t35 - parameters[XZ3] * (t31 - t57)
         + (parameters[MZ3] * t29 + parameters[MX3] * t40);
+    /* link j4: what it passes on */
     const yaw3pitch_real_t t59 = t58 + (t9 * t47 - t7 * t42 + YAW3PITCH_C(-0.7) * t54);
-    const yaw3pitch_real_t t60 = dq[1] * t4;
+    const yaw3pitch_real_t t60 = dq[1] * t4; /* link j2: motion */
     const yaw3pitch_real_t t61 = YAW3PITCH_C(-2.0) * t39;
+    /* link j2: force and moment */
     const yaw3pitch_real_t t62 = t60 * parameters[XX2] + t60 * (parameters[ZZ2] - parameters[YY2])
         + t61 * parameters[XY2];
     const yaw3pitch_real_t t63 = t62 + t27 * parameters[XZ2] + (t23 - t24) * parameters[YZ2]
         + t26 * parameters[MZ2];
+    /* link j3: force and moment */
     const yaw3pitch_real_t t64 = parameters[MX3] * t49 + parameters[MY3] * t55 + parameters[MZ3] * (t57
         + t30);
-    const yaw3pitch_real_t t65 = t64 - parameters[M3] * t40 + t54;
-    const yaw3pitch_real_t t66 = YAW3PITCH_C(2.0) * t60;
+    const yaw3pitch_real_t t65 = t64 - parameters[M3] * t40 + t54; /* link j4: what it passes on */
+    const yaw3pitch_real_t t66 = YAW3PITCH_C(2.0) * t60; /* link j2: motion */
+    /* link j2: force and moment */
     const yaw3pitch_real_t t67 = t39 * (parameters[XX2] - parameters[ZZ2]) - t39 * parameters[YY2]
         + t66 * parameters[XY2];
-    const yaw3pitch_real_t t68 = t1 * t1;
+    const yaw3pitch_real_t t68 = t1 * t1; /* link j2: motion */
+    /* link j2: force and moment */
     const yaw3pitch_real_t t69 = t67 - t27 * parameters[YZ2] + (t24 - t68) * parameters[XZ2]
         + t22 * parameters[MZ2];
+    /* link j3: what it passes on */
     const yaw3pitch_real_t t70 = t69 + (t5 * t52 - t2 * t59 + YAW3PITCH_C(0.8) * t65);
+    /* link j2: what it passes on */
     const yaw3pitch_real_t t71 = t0 * (t63 + (t2 * t52 + t5 * t59)) + t3 * t70;
+    /* link j2: force and moment */
     const yaw3pitch_real_t t72 = t61 * parameters[MX2] - t66 * parameters[MY2] + (t68
         + t23) * parameters[MZ2];
     out[0] = t71 + YAW3PITCH_C(0.12) * (t72 + t65);
+    /* link j4: force and moment */
     const yaw3pitch_real_t t73 = parameters[M4] * t46 + (parameters[MX4] * (t20 + t19)
         + parameters[MY4] * t18);
     const yaw3pitch_real_t t74 = parameters[M4] * t37 - (parameters[MX4] * t18 + parameters[MY4] * (t20
         + t45));
+    /* link j4: what it passes on */
     const yaw3pitch_real_t t75 = parameters[M3] * t29 + (parameters[MX3] * t32 + parameters[MY3] * t35)
         + (t9 * t73 + t7 * t74);
     const yaw3pitch_real_t t76 = t9 * t74 - t7 * t73;
+    /* link j3: force and moment */
     const yaw3pitch_real_t t77 = parameters[M3] * t34 + (parameters[MX3] * t35 + parameters[MY3] * (t31
         + t57));
+    /* link j4: force and moment */
     const yaw3pitch_real_t t78 = (parameters[XX4] - parameters[YY4]) * t18 + parameters[XY4] * (t45 - t19)
         + (parameters[MX4] * t37 + parameters[MY4] * t46);
+    /* link j3: force and moment */
     const yaw3pitch_real_t t79 = t35 * (parameters[XX3] - parameters[YY3]) + parameters[XY3] * (t57 - t30)
         + (parameters[MY3] * t29 - parameters[MX3] * t34);
-    const yaw3pitch_real_t t80 = t79 + (t78 + YAW3PITCH_C(0.7) * t76);
+    const yaw3pitch_real_t t80 = t79 + (t78 + YAW3PITCH_C(0.7) * t76); /* link j4: what it passes on */
+    /* link j3: what it passes on */
     const yaw3pitch_real_t t81 = t80 + YAW3PITCH_C(0.8) * (t2 * (t76 - t77) - t5 * t75);
+    /* link j2: force and moment */
     const yaw3pitch_real_t t82 = t27 * (parameters[YY2] - parameters[XX2]) + (t68 - t23) * parameters[XY2]
         - (t26 * parameters[MX2] + t22 * parameters[MY2]);
     out[1] = t82 + t81;

@@ -8,16 +8,16 @@
  */
 #include "yaw3pitch_private.h"
 
-#if YAW3PITCH_GENERATION != 0x7BB9A1E4UL
+#if YAW3PITCH_GENERATION != 0x14CEE2C4UL
 #error "yaw3pitch.h and yaw3pitch_check_parameters.c are of different generations: generate the arm again"
 #endif
 
-int yaw3pitch_check_parameters(const yaw3pitch_real_t parameters[YAW3PITCH_N_PARAMETERS])
+yaw3pitch_status_t yaw3pitch_check_parameters(const yaw3pitch_real_t parameters[YAW3PITCH_N_PARAMETERS])
 {
     return yaw3pitch_within(parameters, 22, YAW3PITCH_C(1.0e18)) ? YAW3PITCH_STATUS_OK : YAW3PITCH_STATUS_INPUT;
 }
 
-int yaw3pitch_check_parameters_standard(const yaw3pitch_real_t parameters[YAW3PITCH_N_STANDARD_PARAMETERS])
+yaw3pitch_status_t yaw3pitch_check_parameters_standard(const yaw3pitch_real_t parameters[YAW3PITCH_N_STANDARD_PARAMETERS])
 {
     return yaw3pitch_within(parameters, 40, YAW3PITCH_C(1.0e18)) ? YAW3PITCH_STATUS_OK : YAW3PITCH_STATUS_INPUT;
 }

@@ -8,8 +8,8 @@
  *
  * Operations: 0 (0 mul, 0 add, 0 neg).
  *
- * @param[in]   q    [4]  [rad]              joint coordinates; norm at most 10000
- * @param[out]  out  [4]  [(N m) per (N m)]  drive gains K
+ * @param[in]   q    [4]  [rad]          joint coordinates; norm at most 10000
+ * @param[out]  out  [4]  [N m per N m]  drive gains K
  *
  * Coordinates:
  *
@@ -20,15 +20,15 @@
  */
 #include "yaw3pitch_private.h"
 
-#if YAW3PITCH_GENERATION != 0x7BB9A1E4UL
+#if YAW3PITCH_GENERATION != 0x14CEE2C4UL
 #error "yaw3pitch.h and yaw3pitch_drive_gain.c are of different generations: generate the arm again"
 #endif
 
-int yaw3pitch_drive_gain(
+yaw3pitch_status_t yaw3pitch_drive_gain(
     const yaw3pitch_real_t q[YAW3PITCH_N_JOINTS],
     yaw3pitch_real_t out[YAW3PITCH_N_JOINTS])
 {
-    int status = YAW3PITCH_STATUS_OK;
+    yaw3pitch_status_t status = YAW3PITCH_STATUS_OK;
 
     if (!yaw3pitch_within_joints(q, YAW3PITCH_C(1.0e8))) {
         status |= YAW3PITCH_STATUS_INPUT;

@@ -48,11 +48,11 @@
  */
 #include "yaw3pitch_private.h"
 
-#if YAW3PITCH_GENERATION != 0x7BB9A1E4UL
+#if YAW3PITCH_GENERATION != 0x14CEE2C4UL
 #error "yaw3pitch.h and yaw3pitch_energy.c are of different generations: generate the arm again"
 #endif
 
-int yaw3pitch_energy(
+yaw3pitch_status_t yaw3pitch_energy(
     const yaw3pitch_real_t q[YAW3PITCH_N_JOINTS],
     const yaw3pitch_real_t dq[YAW3PITCH_N_JOINTS],
     const yaw3pitch_real_t parameters[YAW3PITCH_N_PARAMETERS],
@@ -61,7 +61,7 @@ int yaw3pitch_energy(
 {
     enum { ZZ1R = 0, XX2R, XY2, XZ2R, YZ2, ZZ2R, MX2R, MY2, XX3R, XY3, XZ3R, YZ3, ZZ3R, MX3R, MY3, XX4R, XY4,
         XZ4, YZ4, ZZ4, MX4, MY4 };
-    int status = YAW3PITCH_STATUS_OK;
+    yaw3pitch_status_t status = YAW3PITCH_STATUS_OK;
 
     if (!yaw3pitch_within_joints(q, YAW3PITCH_C(1.0e8))
         || !yaw3pitch_within_joints(dq, YAW3PITCH_C(1.0e10))
@@ -80,17 +80,17 @@ int yaw3pitch_energy(
     YAW3PITCH_SINCOS(q[2], &t10, &t9);
     yaw3pitch_real_t t23, t22;
     YAW3PITCH_SINCOS(q[3], &t23, &t22);
-    const yaw3pitch_real_t t1 = t0 * dq[0];
+    const yaw3pitch_real_t t1 = t0 * dq[0]; /* link j2: motion */
     const yaw3pitch_real_t t3 = t2 * dq[0];
     const yaw3pitch_real_t t4 = t1 * (parameters[XX2R] * t1 + parameters[XY2] * t3
         + parameters[XZ2R] * dq[1]);
     const yaw3pitch_real_t t5 = dq[1] * (parameters[XZ2R] * t1 + parameters[YZ2] * t3
         + parameters[ZZ2R] * dq[1]);
     const yaw3pitch_real_t t6 = t4 + t3 * (parameters[XY2] * t1 + parameters[YZ2] * dq[1]) + t5;
-    const yaw3pitch_real_t t7 = YAW3PITCH_C(-0.12) * dq[0];
+    const yaw3pitch_real_t t7 = YAW3PITCH_C(-0.12) * dq[0]; /* link j2: velocity of its origin */
     const yaw3pitch_real_t t8 = YAW3PITCH_C(0.5) * (dq[0] * (parameters[ZZ1R] * dq[0]))
         + YAW3PITCH_C(0.5) * t6 + (parameters[MY2] * (t1 * t7) - parameters[MX2R] * (t3 * t7));
-    const yaw3pitch_real_t t11 = t9 * t1 + t10 * t3;
+    const yaw3pitch_real_t t11 = t9 * t1 + t10 * t3; /* link j3: motion */
     const yaw3pitch_real_t t12 = t9 * t3 - t10 * t1;
     const yaw3pitch_real_t t13 = dq[1] + dq[2];
     const yaw3pitch_real_t t14 = t11 * (parameters[XX3R] * t11 + parameters[XY3] * t12
@@ -98,13 +98,13 @@ int yaw3pitch_energy(
     const yaw3pitch_real_t t15 = t13 * (parameters[XZ3R] * t11 + parameters[YZ3] * t12
         + parameters[ZZ3R] * t13);
     const yaw3pitch_real_t t16 = t14 + t12 * (parameters[XY3] * t11 + parameters[YZ3] * t13) + t15;
-    const yaw3pitch_real_t t17 = t7 + YAW3PITCH_C(-0.8) * t3;
+    const yaw3pitch_real_t t17 = t7 + YAW3PITCH_C(-0.8) * t3; /* link j3: velocity of its origin */
     const yaw3pitch_real_t t18 = YAW3PITCH_C(0.8) * dq[1];
     const yaw3pitch_real_t t19 = t9 * t18;
     const yaw3pitch_real_t t20 = t10 * t18;
     const yaw3pitch_real_t t21 = parameters[MX3R] * (t13 * t19 - t12 * t17) + parameters[MY3] * (t11 * t17
         - t13 * t20);
-    const yaw3pitch_real_t t24 = t22 * t11 + t23 * t12;
+    const yaw3pitch_real_t t24 = t22 * t11 + t23 * t12; /* link j4: motion */
     const yaw3pitch_real_t t25 = t22 * t12 - t23 * t11;
     const yaw3pitch_real_t t26 = dq[3] + t13;
     const yaw3pitch_real_t t27 = t24 * (parameters[XX4R] * t24 + parameters[XY4] * t25
@@ -112,16 +112,16 @@ int yaw3pitch_energy(
     const yaw3pitch_real_t t28 = t26 * (parameters[XZ4] * t24 + parameters[YZ4] * t25
         + parameters[ZZ4] * t26);
     const yaw3pitch_real_t t29 = t27 + t25 * (parameters[XY4] * t24 + parameters[YZ4] * t26) + t28;
-    const yaw3pitch_real_t t30 = t17 + YAW3PITCH_C(-0.7) * t12;
+    const yaw3pitch_real_t t30 = t17 + YAW3PITCH_C(-0.7) * t12; /* link j4: velocity of its origin */
     const yaw3pitch_real_t t31 = t19 + YAW3PITCH_C(0.7) * t13;
     const yaw3pitch_real_t t32 = t26 * (t22 * t31 - t23 * t20) - t25 * t30;
     const yaw3pitch_real_t t33 = t24 * t30 - t26 * (t22 * t20 + t23 * t31);
     const yaw3pitch_real_t t34 = t8 + YAW3PITCH_C(0.5) * t16 + t21 + YAW3PITCH_C(0.5) * t29
         + (parameters[MX4] * t32 + parameters[MY4] * t33);
     kinetic[0] = t34;
-    const yaw3pitch_real_t t35 = YAW3PITCH_C(9.81) * t0;
+    const yaw3pitch_real_t t35 = YAW3PITCH_C(9.81) * t0; /* link j2: motion */
     const yaw3pitch_real_t t36 = YAW3PITCH_C(9.81) * t2;
-    const yaw3pitch_real_t t37 = t9 * t35 + t10 * t36;
+    const yaw3pitch_real_t t37 = t9 * t35 + t10 * t36; /* link j3: motion */
     const yaw3pitch_real_t t38 = t9 * t36 - t10 * t35;
     const yaw3pitch_real_t t39 = parameters[MX4] * (t22 * t37 + t23 * t38) + parameters[MY4] * (t22 * t38
         - t23 * t37);

@@ -66,11 +66,11 @@
  */
 #include "yaw3pitch_private.h"
 
-#if YAW3PITCH_GENERATION != 0x7BB9A1E4UL
+#if YAW3PITCH_GENERATION != 0x14CEE2C4UL
 #error "yaw3pitch.h and yaw3pitch_energy_standard.c are of different generations: generate the arm again"
 #endif
 
-int yaw3pitch_energy_standard(
+yaw3pitch_status_t yaw3pitch_energy_standard(
     const yaw3pitch_real_t q[YAW3PITCH_N_JOINTS],
     const yaw3pitch_real_t dq[YAW3PITCH_N_JOINTS],
     const yaw3pitch_real_t parameters[YAW3PITCH_N_STANDARD_PARAMETERS],
@@ -80,7 +80,7 @@ int yaw3pitch_energy_standard(
     enum { XX1 = 0, XY1, XZ1, YY1, YZ1, ZZ1, MX1, MY1, MZ1, M1, XX2, XY2, XZ2, YY2, YZ2, ZZ2, MX2, MY2, MZ2,
         M2, XX3, XY3, XZ3, YY3, YZ3, ZZ3, MX3, MY3, MZ3, M3, XX4, XY4, XZ4, YY4, YZ4, ZZ4, MX4, MY4, MZ4, M4
         };
-    int status = YAW3PITCH_STATUS_OK;
+    yaw3pitch_status_t status = YAW3PITCH_STATUS_OK;
 
     if (!yaw3pitch_within_joints(q, YAW3PITCH_C(1.0e8))
         || !yaw3pitch_within_joints(dq, YAW3PITCH_C(1.0e10))
@@ -99,29 +99,29 @@ int yaw3pitch_energy_standard(
     YAW3PITCH_SINCOS(q[2], &t5, &t2);
     yaw3pitch_real_t t9, t7;
     YAW3PITCH_SINCOS(q[3], &t9, &t7);
-    const yaw3pitch_real_t t1 = t0 * dq[0];
+    const yaw3pitch_real_t t1 = t0 * dq[0]; /* link j2: motion */
     const yaw3pitch_real_t t4 = t3 * dq[0];
-    const yaw3pitch_real_t t6 = t2 * t1 + t5 * t4;
+    const yaw3pitch_real_t t6 = t2 * t1 + t5 * t4; /* link j3: motion */
     const yaw3pitch_real_t t8 = t2 * t4 - t5 * t1;
-    const yaw3pitch_real_t t10 = t7 * t6 + t9 * t8;
+    const yaw3pitch_real_t t10 = t7 * t6 + t9 * t8; /* link j4: motion */
     const yaw3pitch_real_t t11 = t7 * t8 - t9 * t6;
-    const yaw3pitch_real_t t12 = dq[1] + dq[2];
-    const yaw3pitch_real_t t13 = dq[3] + t12;
+    const yaw3pitch_real_t t12 = dq[1] + dq[2]; /* link j3: motion */
+    const yaw3pitch_real_t t13 = dq[3] + t12; /* link j4: motion */
     const yaw3pitch_real_t t14 = t10 * (parameters[XX4] * t10 + parameters[XY4] * t11
         + t13 * parameters[XZ4]);
     const yaw3pitch_real_t t15 = t11 * (parameters[XY4] * t10 + parameters[YY4] * t11
         + t13 * parameters[YZ4]);
     const yaw3pitch_real_t t16 = t13 * (parameters[XZ4] * t10 + parameters[YZ4] * t11
         + t13 * parameters[ZZ4]);
-    const yaw3pitch_real_t t17 = YAW3PITCH_C(0.8) * dq[1];
+    const yaw3pitch_real_t t17 = YAW3PITCH_C(0.8) * dq[1]; /* link j3: velocity of its origin */
     const yaw3pitch_real_t t18 = t2 * t17;
-    const yaw3pitch_real_t t19 = YAW3PITCH_C(-0.7) * t12 - t18;
-    const yaw3pitch_real_t t20 = t5 * t17;
-    const yaw3pitch_real_t t21 = t7 * t20 - t9 * t19;
+    const yaw3pitch_real_t t19 = YAW3PITCH_C(-0.7) * t12 - t18; /* link j4: velocity of its origin */
+    const yaw3pitch_real_t t20 = t5 * t17; /* link j3: velocity of its origin */
+    const yaw3pitch_real_t t21 = t7 * t20 - t9 * t19; /* link j4: velocity of its origin */
     const yaw3pitch_real_t t22 = t9 * t20 + t7 * t19;
-    const yaw3pitch_real_t t23 = YAW3PITCH_C(0.12) * dq[0];
-    const yaw3pitch_real_t t24 = t23 + YAW3PITCH_C(0.8) * t4;
-    const yaw3pitch_real_t t25 = t24 - YAW3PITCH_C(-0.7) * t8;
+    const yaw3pitch_real_t t23 = YAW3PITCH_C(0.12) * dq[0]; /* link j2: velocity of its origin */
+    const yaw3pitch_real_t t24 = t23 + YAW3PITCH_C(0.8) * t4; /* link j3: velocity of its origin */
+    const yaw3pitch_real_t t25 = t24 - YAW3PITCH_C(-0.7) * t8; /* link j4: velocity of its origin */
     const yaw3pitch_real_t t26 = parameters[M4] * (t21 * t21 + t22 * t22 + t25 * t25);
     const yaw3pitch_real_t t27 = t6 * (parameters[XX3] * t6 + parameters[XY3] * t8 + t12 * parameters[XZ3]);
     const yaw3pitch_real_t t28 = t8 * (parameters[XY3] * t6 + parameters[YY3] * t8 + t12 * parameters[YZ3]);
@@ -143,11 +143,11 @@ int yaw3pitch_energy_standard(
     const yaw3pitch_real_t t39 = t37 + YAW3PITCH_C(0.5) * (t14 + t15 + t16 + t26) + (t38
         + parameters[MZ4] * (t11 * t21 + t10 * t22));
     kinetic[0] = t39;
-    const yaw3pitch_real_t t40 = YAW3PITCH_C(9.81) * t0;
+    const yaw3pitch_real_t t40 = YAW3PITCH_C(9.81) * t0; /* link j2: motion */
     const yaw3pitch_real_t t41 = YAW3PITCH_C(9.81) * t3;
     const yaw3pitch_real_t t42 = YAW3PITCH_C(9.81) * parameters[MZ1] + YAW3PITCH_C(4.4145) * parameters[M1]
         + (t40 * parameters[MX2] + t41 * parameters[MY2] + YAW3PITCH_C(4.4145) * parameters[M2]);
-    const yaw3pitch_real_t t43 = t2 * t40 + t5 * t41;
+    const yaw3pitch_real_t t43 = t2 * t40 + t5 * t41; /* link j3: motion */
     const yaw3pitch_real_t t44 = t2 * t41 - t5 * t40;
     const yaw3pitch_real_t t45 = YAW3PITCH_C(7.848000000000001) * t0 + YAW3PITCH_C(4.4145);
     const yaw3pitch_real_t t46 = t42 + (t43 * parameters[MX3] + t44 * parameters[MY3] + parameters[M3] * t45);

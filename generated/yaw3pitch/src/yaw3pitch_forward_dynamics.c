@@ -49,11 +49,11 @@
  */
 #include "yaw3pitch_private.h"
 
-#if YAW3PITCH_GENERATION != 0x7BB9A1E4UL
+#if YAW3PITCH_GENERATION != 0x14CEE2C4UL
 #error "yaw3pitch.h and yaw3pitch_forward_dynamics.c are of different generations: generate the arm again"
 #endif
 
-int yaw3pitch_forward_dynamics(
+yaw3pitch_status_t yaw3pitch_forward_dynamics(
     const yaw3pitch_real_t q[YAW3PITCH_N_JOINTS],
     const yaw3pitch_real_t dq[YAW3PITCH_N_JOINTS],
     const yaw3pitch_real_t input[YAW3PITCH_N_JOINTS],
@@ -62,7 +62,7 @@ int yaw3pitch_forward_dynamics(
 {
     enum { ZZ1R = 0, XX2R, XY2, XZ2R, YZ2, ZZ2R, MX2R, MY2, XX3R, XY3, XZ3R, YZ3, ZZ3R, MX3R, MY3, XX4R, XY4,
         XZ4, YZ4, ZZ4, MX4, MY4 };
-    int status = YAW3PITCH_STATUS_OK;
+    yaw3pitch_status_t status = YAW3PITCH_STATUS_OK;
 
     if (!yaw3pitch_within_joints(q, YAW3PITCH_C(1.0e8))
         || !yaw3pitch_within_joints(dq, YAW3PITCH_C(1.0e10))
@@ -85,11 +85,12 @@ int yaw3pitch_forward_dynamics(
         yaw3pitch_zero(out, 4);
         return YAW3PITCH_STATUS_PIVOT;
     }
+    /* link j4: column of the mass matrix */
     const yaw3pitch_real_t t2 = t0 * parameters[MY4] - t1 * parameters[MX4];
     const yaw3pitch_real_t t3 = YAW3PITCH_C(0.7) * t2 - parameters[ZZ4];
     const yaw3pitch_real_t t4 = YAW3PITCH_C(-1.0) / parameters[ZZ4];
     const yaw3pitch_real_t t5 = t3 * t4;
-    const yaw3pitch_real_t t6 = YAW3PITCH_C(-1.4) * t2;
+    const yaw3pitch_real_t t6 = YAW3PITCH_C(-1.4) * t2; /* link j4: inertia of it and all beyond */
     const yaw3pitch_real_t t7 = parameters[ZZ3R] + (parameters[ZZ4] + t6);
     const yaw3pitch_real_t t8 = yaw3pitch_bounded(t7 + t3 * t5);
     if (!(t8 > YAW3PITCH_C(1.0e-12))) {
@@ -101,16 +102,18 @@ int yaw3pitch_forward_dynamics(
         yaw3pitch_zero(out, 4);
         return YAW3PITCH_STATUS_PIVOT;
     }
+    /* link j4: column of the mass matrix */
     const yaw3pitch_real_t t10 = t1 * parameters[MY4] + t0 * parameters[MX4];
-    const yaw3pitch_real_t t11 = parameters[MY3] + t10;
+    const yaw3pitch_real_t t11 = parameters[MY3] + t10; /* link j4: inertia of it and all beyond */
     const yaw3pitch_real_t t13 = parameters[MX3R] - t2;
-    const yaw3pitch_real_t t15 = t14 * t13 - t12 * t11;
+    const yaw3pitch_real_t t15 = t14 * t13 - t12 * t11; /* link j3: column of the mass matrix */
+    /* link j4: column of the mass matrix */
     const yaw3pitch_real_t t16 = t3 + YAW3PITCH_C(0.8) * (t12 * t10 + t14 * t2);
     const yaw3pitch_real_t t17 = YAW3PITCH_C(-0.8) * t15 - t7 - t16 * t5;
     const yaw3pitch_real_t t18 = YAW3PITCH_C(1.0) / t8;
     const yaw3pitch_real_t t19 = t17 * t18;
     const yaw3pitch_real_t t20 = t16 * t4;
-    const yaw3pitch_real_t t21 = YAW3PITCH_C(1.6) * t15;
+    const yaw3pitch_real_t t21 = YAW3PITCH_C(1.6) * t15; /* link j3: inertia of it and all beyond */
     const yaw3pitch_real_t t22 = parameters[ZZ2R] + (t7 + t21);
     const yaw3pitch_real_t t23 = yaw3pitch_bounded(t22 + t16 * t20 - t17 * t19);
     if (!(t23 > YAW3PITCH_C(1.0e-12))) {
@@ -122,28 +125,32 @@ int yaw3pitch_forward_dynamics(
         yaw3pitch_zero(out, 4);
         return YAW3PITCH_STATUS_PIVOT;
     }
+    /* link j4: inertia of it and all beyond */
     const yaw3pitch_real_t t25 = t1 * parameters[XX4R] + parameters[XY4] * (YAW3PITCH_C(-2.0) * t0);
     const yaw3pitch_real_t t26 = t1 * t25;
     const yaw3pitch_real_t t27 = parameters[XX4R] - t26 + t6;
     const yaw3pitch_real_t t28 = parameters[XX3R] + t26;
     const yaw3pitch_real_t t29 = parameters[XY3] + (parameters[XY4] + t0 * t25 + YAW3PITCH_C(-0.7) * t10);
+    /* link j3: inertia of it and all beyond */
     const yaw3pitch_real_t t30 = t14 * (t27 - t28) + t29 * (YAW3PITCH_C(2.0) * t12);
     const yaw3pitch_real_t t31 = t14 * t30;
     const yaw3pitch_real_t t32 = parameters[XX2R] + (t27 - t31);
-    const yaw3pitch_real_t t34 = t14 * t11 + t12 * t13;
+    const yaw3pitch_real_t t34 = t14 * t11 + t12 * t13; /* link j3: column of the mass matrix */
+    /* link j2: inertia of it and all beyond */
     const yaw3pitch_real_t t36 = (parameters[XY2] + (t29 - t12 * t30
         + YAW3PITCH_C(-0.8) * t34)) * (YAW3PITCH_C(2.0) * t35);
     const yaw3pitch_real_t t37 = t33 * (t33 * (t28 + t31 + t21 - t32) + t36);
     const yaw3pitch_real_t t38 = YAW3PITCH_C(0.24) * (t33 * (parameters[MX2R] + t15) - t35 * (parameters[MY2]
         + t34));
     const yaw3pitch_real_t t39 = parameters[ZZ1R] + (t32 + t37 + t38);
+    /* link j4: column of the mass matrix */
     const yaw3pitch_real_t t40 = t0 * parameters[YZ4] - t1 * parameters[XZ4];
     const yaw3pitch_real_t t41 = t0 * parameters[XZ4] + t1 * parameters[YZ4];
     const yaw3pitch_real_t t42 = t33 * (t14 * t41 - t12 * t40) - t35 * (t14 * t40 + t12 * t41);
     const yaw3pitch_real_t t43 = t42 * t4;
-    const yaw3pitch_real_t t44 = t40 - parameters[XZ3R];
+    const yaw3pitch_real_t t44 = t40 - parameters[XZ3R]; /* link j4: inertia of it and all beyond */
     const yaw3pitch_real_t t45 = parameters[YZ3] + t41;
-    const yaw3pitch_real_t t46 = t14 * t44 + t12 * t45;
+    const yaw3pitch_real_t t46 = t14 * t44 + t12 * t45; /* link j3: column of the mass matrix */
     const yaw3pitch_real_t t47 = t12 * t44 - t14 * t45;
     const yaw3pitch_real_t t48 = t35 * t46 + t33 * t47 + t42 * t5;
     const yaw3pitch_real_t t49 = t48 * t18;
@@ -161,88 +168,106 @@ int yaw3pitch_forward_dynamics(
         yaw3pitch_zero(out, 4);
         return YAW3PITCH_STATUS_PIVOT;
     }
-    const yaw3pitch_real_t t56 = t35 * dq[0];
+    const yaw3pitch_real_t t56 = t35 * dq[0]; /* link j2: motion */
     const yaw3pitch_real_t t57 = t33 * dq[0];
-    const yaw3pitch_real_t t58 = t14 * t56 + t12 * t57;
+    const yaw3pitch_real_t t58 = t14 * t56 + t12 * t57; /* link j3: motion */
     const yaw3pitch_real_t t59 = t12 * t56 - t14 * t57;
-    const yaw3pitch_real_t t60 = t0 * t58 + t1 * t59;
-    const yaw3pitch_real_t t61 = dq[1] + dq[2];
-    const yaw3pitch_real_t t62 = dq[3] + t61;
+    const yaw3pitch_real_t t60 = t0 * t58 + t1 * t59; /* link j4: motion */
+    const yaw3pitch_real_t t61 = dq[1] + dq[2]; /* link j3: motion */
+    const yaw3pitch_real_t t62 = dq[3] + t61; /* link j4: motion */
     const yaw3pitch_real_t t63 = t60 * t62;
     const yaw3pitch_real_t t64 = t1 * t58 - t0 * t59;
     const yaw3pitch_real_t t65 = t64 * t62;
-    const yaw3pitch_real_t t66 = YAW3PITCH_C(2.0) * t65;
-    const yaw3pitch_real_t t67 = t64 * t60;
+    const yaw3pitch_real_t t66 = YAW3PITCH_C(2.0) * t65; /* link j4: force and moment */
+    const yaw3pitch_real_t t67 = t64 * t60; /* link j4: motion */
+    /* link j4: force and moment */
     const yaw3pitch_real_t t68 = parameters[XX4R] * t63 + parameters[ZZ4] * t63 + parameters[XY4] * t66
         + parameters[XZ4] * t67;
-    const yaw3pitch_real_t t69 = t60 * t60;
+    const yaw3pitch_real_t t69 = t60 * t60; /* link j4: motion */
     const yaw3pitch_real_t t70 = t62 * t62;
-    const yaw3pitch_real_t t71 = t58 * t61;
-    const yaw3pitch_real_t t72 = dq[1] * t56;
-    const yaw3pitch_real_t t73 = YAW3PITCH_C(-1.6) * t72;
-    const yaw3pitch_real_t t74 = t73 + YAW3PITCH_C(-1.4) * t71;
+    const yaw3pitch_real_t t71 = t58 * t61; /* link j3: motion */
+    const yaw3pitch_real_t t72 = dq[1] * t56; /* link j2: motion */
+    const yaw3pitch_real_t t73 = YAW3PITCH_C(-1.6) * t72; /* link j3: motion */
+    const yaw3pitch_real_t t74 = t73 + YAW3PITCH_C(-1.4) * t71; /* link j4: motion */
+    /* link j4: force and moment */
     const yaw3pitch_real_t t75 = t68 + parameters[YZ4] * (t70 - t69) + parameters[MY4] * t74;
     const yaw3pitch_real_t t76 = YAW3PITCH_C(-2.0) * t63;
     const yaw3pitch_real_t t77 = t65 * (parameters[XX4R] - parameters[ZZ4]) + parameters[XY4] * t76
         + parameters[YZ4] * t67;
-    const yaw3pitch_real_t t78 = t64 * t64;
+    const yaw3pitch_real_t t78 = t64 * t64; /* link j4: motion */
+    /* link j4: force and moment */
     const yaw3pitch_real_t t79 = t77 + parameters[XZ4] * (t70 - t78) + parameters[MX4] * t74;
-    const yaw3pitch_real_t t80 = t59 * t61;
-    const yaw3pitch_real_t t81 = YAW3PITCH_C(2.0) * t71;
-    const yaw3pitch_real_t t82 = t58 * t59;
+    const yaw3pitch_real_t t80 = t59 * t61; /* link j3: motion */
+    const yaw3pitch_real_t t81 = YAW3PITCH_C(2.0) * t71; /* link j4: motion */
+    const yaw3pitch_real_t t82 = t58 * t59; /* link j3: motion */
+    /* link j3: force and moment */
     const yaw3pitch_real_t t83 = parameters[XX3R] * t80 + parameters[ZZ3R] * t80 + parameters[XY3] * t81
         + parameters[XZ3R] * t82;
-    const yaw3pitch_real_t t84 = t59 * t59;
+    const yaw3pitch_real_t t84 = t59 * t59; /* link j3: motion */
     const yaw3pitch_real_t t85 = t61 * t61;
+    /* link j4: what it passes on */
     const yaw3pitch_real_t t86 = t83 + parameters[YZ3] * (t85 - t84) + parameters[MY3] * t73 + (t1 * t75
         + t0 * t79);
+    /* link j4: force and moment */
     const yaw3pitch_real_t t87 = parameters[MX4] * t66 + parameters[MY4] * t76;
-    const yaw3pitch_real_t t88 = YAW3PITCH_C(-2.0) * t80;
+    const yaw3pitch_real_t t88 = YAW3PITCH_C(-2.0) * t80; /* link j4: motion */
+    /* link j3: force and moment */
     const yaw3pitch_real_t t89 = t71 * (parameters[XX3R] - parameters[ZZ3R]) + parameters[XY3] * t88
         + parameters[YZ3] * t82;
-    const yaw3pitch_real_t t90 = t58 * t58;
+    const yaw3pitch_real_t t90 = t58 * t58; /* link j3: motion */
+    /* link j4: what it passes on */
     const yaw3pitch_real_t t91 = t89 - parameters[XZ3R] * (t90 - t85) + parameters[MX3R] * t73 - (t0 * t75
         - t1 * t79 + YAW3PITCH_C(0.7) * t87);
-    const yaw3pitch_real_t t92 = dq[1] * t57;
+    const yaw3pitch_real_t t92 = dq[1] * t57; /* link j2: motion */
     const yaw3pitch_real_t t93 = YAW3PITCH_C(2.0) * t72;
     const yaw3pitch_real_t t94 = t56 * t57;
+    /* link j2: force and moment */
     const yaw3pitch_real_t t95 = parameters[XY2] * t93 - (parameters[XX2R] * t92 + parameters[ZZ2R] * t92)
         - parameters[XZ2R] * t94;
-    const yaw3pitch_real_t t96 = t57 * t57;
+    const yaw3pitch_real_t t96 = t57 * t57; /* link j2: motion */
     const yaw3pitch_real_t t97 = dq[1] * dq[1];
+    /* link j3: what it passes on */
     const yaw3pitch_real_t t98 = t95 + parameters[YZ2] * (t97 - t96) + (t14 * t86 + t12 * t91);
+    /* link j4: what it passes on */
     const yaw3pitch_real_t t99 = parameters[MX3R] * t81 + parameters[MY3] * t88 + t87;
-    const yaw3pitch_real_t t100 = YAW3PITCH_C(2.0) * t92;
+    const yaw3pitch_real_t t100 = YAW3PITCH_C(2.0) * t92; /* link j2: motion */
+    /* link j2: force and moment */
     const yaw3pitch_real_t t101 = t72 * (parameters[ZZ2R] - parameters[XX2R]) - parameters[XY2] * t100
         + parameters[YZ2] * t94;
-    const yaw3pitch_real_t t102 = t56 * t56;
+    const yaw3pitch_real_t t102 = t56 * t56; /* link j2: motion */
+    /* link j3: what it passes on */
     const yaw3pitch_real_t t103 = t101 + parameters[XZ2R] * (t102 - t97) + (t12 * t86 - t14 * t91
         + YAW3PITCH_C(0.8) * t99);
+    /* link j2: what it passes on */
     const yaw3pitch_real_t t104 = t35 * t98 + t33 * t103 + YAW3PITCH_C(0.12) * (parameters[MX2R] * t93
         + parameters[MY2] * t100 + t99);
-    const yaw3pitch_real_t t105 = YAW3PITCH_C(0.12) * (dq[0] * dq[0]);
+    const yaw3pitch_real_t t105 = YAW3PITCH_C(0.12) * (dq[0] * dq[0]); /* link j2: motion */
     const yaw3pitch_real_t t106 = t33 * t105 - YAW3PITCH_C(9.81) * t35;
-    const yaw3pitch_real_t t107 = t106 + YAW3PITCH_C(0.8) * (t96 + t97);
-    const yaw3pitch_real_t t108 = t35 * t105 + YAW3PITCH_C(9.81) * t33;
-    const yaw3pitch_real_t t109 = t108 + YAW3PITCH_C(0.8) * t94;
+    const yaw3pitch_real_t t107 = t106 + YAW3PITCH_C(0.8) * (t96 + t97); /* link j3: motion */
+    const yaw3pitch_real_t t108 = t35 * t105 + YAW3PITCH_C(9.81) * t33; /* link j2: motion */
+    const yaw3pitch_real_t t109 = t108 + YAW3PITCH_C(0.8) * t94; /* link j3: motion */
     const yaw3pitch_real_t t110 = t14 * t107 - t12 * t109;
-    const yaw3pitch_real_t t111 = t84 + t85;
+    const yaw3pitch_real_t t111 = t84 + t85; /* link j4: motion */
     const yaw3pitch_real_t t112 = t110 + YAW3PITCH_C(0.7) * t111;
-    const yaw3pitch_real_t t113 = t12 * t107 + t14 * t109;
-    const yaw3pitch_real_t t114 = t113 - YAW3PITCH_C(0.7) * t82;
+    const yaw3pitch_real_t t113 = t12 * t107 + t14 * t109; /* link j3: motion */
+    const yaw3pitch_real_t t114 = t113 - YAW3PITCH_C(0.7) * t82; /* link j4: motion */
+    /* link j4: force and moment */
     const yaw3pitch_real_t t115 = parameters[MX4] * (t0 * t112 + t1 * t114) + parameters[MY4] * (t1 * t112
         - t0 * t114);
     const yaw3pitch_real_t t116 = parameters[XX4R] * t67 + parameters[XY4] * (t78 - t69) + t115;
     const yaw3pitch_real_t t117 = input[3] - t116;
     const yaw3pitch_real_t t118 = parameters[MX4] * (t69 + t70) + parameters[MY4] * t67;
     const yaw3pitch_real_t t119 = parameters[MX4] * t67 + parameters[MY4] * (t78 + t70);
-    const yaw3pitch_real_t t120 = t0 * t118 + t1 * t119;
+    const yaw3pitch_real_t t120 = t0 * t118 + t1 * t119; /* link j4: what it passes on */
+    /* link j3: force and moment */
     const yaw3pitch_real_t t121 = parameters[XX3R] * t82 + parameters[XY3] * (t90 - t84)
         + (parameters[MX3R] * t113 + parameters[MY3] * t110);
-    const yaw3pitch_real_t t122 = t121 + (t116 - YAW3PITCH_C(0.7) * t120);
+    const yaw3pitch_real_t t122 = t121 + (t116 - YAW3PITCH_C(0.7) * t120); /* link j4: what it passes on */
     const yaw3pitch_real_t t123 = input[2] - t122 - t117 * t5;
     const yaw3pitch_real_t t124 = parameters[MX3R] * t111 + parameters[MY3] * t82 + (t1 * t118 - t0 * t119);
+    /* link j3: what it passes on */
     const yaw3pitch_real_t t125 = t14 * (parameters[MX3R] * t82 + parameters[MY3] * (t90 + t85) + t120);
+    /* link j2: force and moment */
     const yaw3pitch_real_t t126 = parameters[XX2R] * t94 - parameters[XY2] * (t102 - t96)
         - (parameters[MX2R] * t108 + parameters[MY2] * t106);
     const yaw3pitch_real_t t127 = input[1] + (t126 - (t122 - YAW3PITCH_C(0.8) * (t12 * t124 + t125)));

@@ -15,9 +15,9 @@
  *                                                           norm at most 1e+09
  * @param[in]   parameters    [22]                           base parameters; norm at most 1e+09
  * @param[out]  ddq           [4]   [rad/s^2]                joint accelerations
- * @param[out]  ddq_by_q      [16]  [(rad/s^2) per (rad)]    d ddq / d q; 4 x 4, row-major
+ * @param[out]  ddq_by_q      [16]  [(rad/s^2) per rad]      d ddq / d q; 4 x 4, row-major
  * @param[out]  ddq_by_dq     [16]  [(rad/s^2) per (rad/s)]  d ddq / d dq; 4 x 4, row-major
- * @param[out]  ddq_by_input  [16]  [(rad/s^2) per (N m)]    d ddq / d input; 4 x 4, row-major
+ * @param[out]  ddq_by_input  [16]  [(rad/s^2) per N m]      d ddq / d input; 4 x 4, row-major
  *
  * Coordinates:
  *
@@ -53,11 +53,11 @@
  */
 #include "yaw3pitch_private.h"
 
-#if YAW3PITCH_GENERATION != 0x7BB9A1E4UL
+#if YAW3PITCH_GENERATION != 0x14CEE2C4UL
 #error "yaw3pitch.h and yaw3pitch_forward_dynamics_derivatives.c are of different generations: generate the arm again"
 #endif
 
-int yaw3pitch_forward_dynamics_derivatives(
+yaw3pitch_status_t yaw3pitch_forward_dynamics_derivatives(
     const yaw3pitch_real_t q[YAW3PITCH_N_JOINTS],
     const yaw3pitch_real_t dq[YAW3PITCH_N_JOINTS],
     const yaw3pitch_real_t input[YAW3PITCH_N_JOINTS],
@@ -69,7 +69,7 @@ int yaw3pitch_forward_dynamics_derivatives(
 {
     enum { ZZ1R = 0, XX2R, XY2, XZ2R, YZ2, ZZ2R, MX2R, MY2, XX3R, XY3, XZ3R, YZ3, ZZ3R, MX3R, MY3, XX4R, XY4,
         XZ4, YZ4, ZZ4, MX4, MY4 };
-    int status = YAW3PITCH_STATUS_OK;
+    yaw3pitch_status_t status = YAW3PITCH_STATUS_OK;
 
     if (!yaw3pitch_within_joints(q, YAW3PITCH_C(1.0e8))
         || !yaw3pitch_within_joints(dq, YAW3PITCH_C(1.0e10))
@@ -98,11 +98,12 @@ int yaw3pitch_forward_dynamics_derivatives(
         yaw3pitch_zero(ddq_by_input, 16);
         return YAW3PITCH_STATUS_PIVOT;
     }
+    /* link j4: column of the mass matrix */
     const yaw3pitch_real_t t2 = t0 * parameters[MY4] - t1 * parameters[MX4];
     const yaw3pitch_real_t t3 = YAW3PITCH_C(0.7) * t2 - parameters[ZZ4];
     const yaw3pitch_real_t t4 = YAW3PITCH_C(1.0) / parameters[ZZ4];
     const yaw3pitch_real_t t5 = t3 * t4;
-    const yaw3pitch_real_t t6 = YAW3PITCH_C(1.4) * t2;
+    const yaw3pitch_real_t t6 = YAW3PITCH_C(1.4) * t2; /* link j4: inertia of it and all beyond */
     const yaw3pitch_real_t t7 = parameters[ZZ3R] - (t6 - parameters[ZZ4]);
     const yaw3pitch_real_t t8 = yaw3pitch_bounded(t7 - t3 * t5);
     if (!(t8 > YAW3PITCH_C(1.0e-12))) {
@@ -120,18 +121,19 @@ int yaw3pitch_forward_dynamics_derivatives(
         yaw3pitch_zero(ddq_by_input, 16);
         return YAW3PITCH_STATUS_PIVOT;
     }
+    /* link j4: column of the mass matrix */
     const yaw3pitch_real_t t10 = t1 * parameters[MY4] + t0 * parameters[MX4];
-    const yaw3pitch_real_t t11 = parameters[MY3] + t10;
+    const yaw3pitch_real_t t11 = parameters[MY3] + t10; /* link j4: inertia of it and all beyond */
     const yaw3pitch_real_t t13 = t2 - parameters[MX3R];
-    const yaw3pitch_real_t t15 = t12 * t11 + t14 * t13;
+    const yaw3pitch_real_t t15 = t12 * t11 + t14 * t13; /* link j3: column of the mass matrix */
     const yaw3pitch_real_t t16 = YAW3PITCH_C(0.8) * t15 - t7;
-    const yaw3pitch_real_t t17 = t12 * t10 + t14 * t2;
+    const yaw3pitch_real_t t17 = t12 * t10 + t14 * t2; /* link j4: column of the mass matrix */
     const yaw3pitch_real_t t18 = t3 + YAW3PITCH_C(0.8) * t17;
     const yaw3pitch_real_t t19 = t16 + t18 * t5;
     const yaw3pitch_real_t t20 = YAW3PITCH_C(-1.0) / t8;
     const yaw3pitch_real_t t21 = t19 * t20;
     const yaw3pitch_real_t t22 = t18 * t4;
-    const yaw3pitch_real_t t23 = YAW3PITCH_C(1.6) * t15;
+    const yaw3pitch_real_t t23 = YAW3PITCH_C(1.6) * t15; /* link j3: inertia of it and all beyond */
     const yaw3pitch_real_t t24 = parameters[ZZ2R] - (t23 - t7);
     const yaw3pitch_real_t t25 = yaw3pitch_bounded(t24 - t18 * t22 + t19 * t21);
     if (!(t25 > YAW3PITCH_C(1.0e-12))) {
@@ -149,35 +151,41 @@ int yaw3pitch_forward_dynamics_derivatives(
         yaw3pitch_zero(ddq_by_input, 16);
         return YAW3PITCH_STATUS_PIVOT;
     }
+    /* link j4: inertia of it and all beyond */
     const yaw3pitch_real_t t27 = parameters[XY4] * (YAW3PITCH_C(2.0) * t0) - t1 * parameters[XX4R];
     const yaw3pitch_real_t t28 = t1 * t27;
     const yaw3pitch_real_t t29 = parameters[XX4R] + t28 - t6;
     const yaw3pitch_real_t t30 = parameters[XX3R] - t28;
     const yaw3pitch_real_t t31 = t0 * t27 - parameters[XY4] + YAW3PITCH_C(0.7) * t10 - parameters[XY3];
+    /* link j3: inertia of it and all beyond */
     const yaw3pitch_real_t t32 = t14 * (t30 - t29) - t31 * (YAW3PITCH_C(-2.0) * t12);
     const yaw3pitch_real_t t33 = t14 * t32;
     const yaw3pitch_real_t t34 = t30 - t33 - t23;
     const yaw3pitch_real_t t35 = parameters[XX2R] + (t29 + t33);
-    const yaw3pitch_real_t t37 = t12 * t13 - t14 * t11;
+    const yaw3pitch_real_t t37 = t12 * t13 - t14 * t11; /* link j3: column of the mass matrix */
+    /* link j3: inertia of it and all beyond */
     const yaw3pitch_real_t t38 = parameters[XY2] + (t12 * t32 - t31 + YAW3PITCH_C(0.8) * t37);
+    /* link j2: inertia of it and all beyond */
     const yaw3pitch_real_t t40 = t36 * (t36 * (t34 - t35) + t38 * (YAW3PITCH_C(2.0) * t39));
-    const yaw3pitch_real_t t41 = t37 - parameters[MY2];
+    const yaw3pitch_real_t t41 = t37 - parameters[MY2]; /* link j3: inertia of it and all beyond */
     const yaw3pitch_real_t t42 = parameters[MX2R] - t15;
+    /* link j2: inertia of it and all beyond */
     const yaw3pitch_real_t t43 = t35 + t40 + YAW3PITCH_C(0.24) * (t39 * t41 + t36 * t42);
     const yaw3pitch_real_t t44 = parameters[ZZ1R] + t43;
+    /* link j4: column of the mass matrix */
     const yaw3pitch_real_t t45 = t0 * parameters[YZ4] - t1 * parameters[XZ4];
     const yaw3pitch_real_t t46 = t0 * parameters[XZ4] + t1 * parameters[YZ4];
     const yaw3pitch_real_t t47 = t14 * t45 + t12 * t46;
     const yaw3pitch_real_t t48 = t12 * t45 - t14 * t46;
     const yaw3pitch_real_t t49 = t39 * t47 + t36 * t48;
     const yaw3pitch_real_t t50 = t49 * t4;
-    const yaw3pitch_real_t t51 = t45 - parameters[XZ3R];
+    const yaw3pitch_real_t t51 = t45 - parameters[XZ3R]; /* link j4: inertia of it and all beyond */
     const yaw3pitch_real_t t52 = parameters[YZ3] + t46;
-    const yaw3pitch_real_t t53 = t14 * t51 + t12 * t52;
+    const yaw3pitch_real_t t53 = t14 * t51 + t12 * t52; /* link j3: column of the mass matrix */
     const yaw3pitch_real_t t54 = t12 * t51 - t14 * t52;
     const yaw3pitch_real_t t55 = t39 * t53 + t36 * t54 + t49 * t5;
     const yaw3pitch_real_t t56 = t55 * t20;
-    const yaw3pitch_real_t t57 = parameters[XZ2R] - t53;
+    const yaw3pitch_real_t t57 = parameters[XZ2R] - t53; /* link j3: inertia of it and all beyond */
     const yaw3pitch_real_t t58 = t54 - parameters[YZ2];
     const yaw3pitch_real_t t59 = t39 * t57 - t36 * t58 - t49 * t22 + t55 * t21;
     const yaw3pitch_real_t t60 = YAW3PITCH_C(1.0) / t25;
@@ -198,94 +206,111 @@ int yaw3pitch_forward_dynamics_derivatives(
         yaw3pitch_zero(ddq_by_input, 16);
         return YAW3PITCH_STATUS_PIVOT;
     }
-    const yaw3pitch_real_t t64 = t39 * dq[0];
+    const yaw3pitch_real_t t64 = t39 * dq[0]; /* link j2: motion */
     const yaw3pitch_real_t t65 = t36 * dq[0];
-    const yaw3pitch_real_t t66 = t14 * t64 + t12 * t65;
+    const yaw3pitch_real_t t66 = t14 * t64 + t12 * t65; /* link j3: motion */
     const yaw3pitch_real_t t67 = t12 * t64 - t14 * t65;
-    const yaw3pitch_real_t t68 = t0 * t66 + t1 * t67;
-    const yaw3pitch_real_t t69 = dq[1] + dq[2];
-    const yaw3pitch_real_t t70 = dq[3] + t69;
+    const yaw3pitch_real_t t68 = t0 * t66 + t1 * t67; /* link j4: motion */
+    const yaw3pitch_real_t t69 = dq[1] + dq[2]; /* link j3: motion */
+    const yaw3pitch_real_t t70 = dq[3] + t69; /* link j4: motion */
     const yaw3pitch_real_t t71 = t68 * t70;
     const yaw3pitch_real_t t72 = t1 * t66 - t0 * t67;
     const yaw3pitch_real_t t73 = t72 * t70;
-    const yaw3pitch_real_t t74 = YAW3PITCH_C(2.0) * t73;
-    const yaw3pitch_real_t t75 = t72 * t68;
+    const yaw3pitch_real_t t74 = YAW3PITCH_C(2.0) * t73; /* link j4: force and moment */
+    const yaw3pitch_real_t t75 = t72 * t68; /* link j4: motion */
+    /* link j4: force and moment */
     const yaw3pitch_real_t t76 = parameters[XX4R] * t71 + parameters[ZZ4] * t71 + parameters[XY4] * t74
         + parameters[XZ4] * t75;
-    const yaw3pitch_real_t t77 = t68 * t68;
+    const yaw3pitch_real_t t77 = t68 * t68; /* link j4: motion */
     const yaw3pitch_real_t t78 = t70 * t70;
-    const yaw3pitch_real_t t79 = t66 * t69;
-    const yaw3pitch_real_t t80 = dq[1] * t64;
-    const yaw3pitch_real_t t81 = YAW3PITCH_C(-1.6) * t80;
-    const yaw3pitch_real_t t82 = t81 + YAW3PITCH_C(-1.4) * t79;
+    const yaw3pitch_real_t t79 = t66 * t69; /* link j3: motion */
+    const yaw3pitch_real_t t80 = dq[1] * t64; /* link j2: motion */
+    const yaw3pitch_real_t t81 = YAW3PITCH_C(-1.6) * t80; /* link j3: motion */
+    const yaw3pitch_real_t t82 = t81 + YAW3PITCH_C(-1.4) * t79; /* link j4: motion */
+    /* link j4: force and moment */
     const yaw3pitch_real_t t83 = t76 + parameters[YZ4] * (t78 - t77) + parameters[MY4] * t82;
     const yaw3pitch_real_t t84 = parameters[XX4R] - parameters[ZZ4];
     const yaw3pitch_real_t t85 = YAW3PITCH_C(-2.0) * t71;
-    const yaw3pitch_real_t t86 = t72 * t72;
+    const yaw3pitch_real_t t86 = t72 * t72; /* link j4: motion */
+    /* link j4: force and moment */
     const yaw3pitch_real_t t87 = t73 * t84 + parameters[XY4] * t85 + parameters[YZ4] * t75
         + parameters[XZ4] * (t78 - t86);
     const yaw3pitch_real_t t88 = t87 + parameters[MX4] * t82;
-    const yaw3pitch_real_t t89 = t67 * t69;
-    const yaw3pitch_real_t t90 = YAW3PITCH_C(2.0) * t79;
-    const yaw3pitch_real_t t91 = t66 * t67;
+    const yaw3pitch_real_t t89 = t67 * t69; /* link j3: motion */
+    const yaw3pitch_real_t t90 = YAW3PITCH_C(2.0) * t79; /* link j4: motion */
+    const yaw3pitch_real_t t91 = t66 * t67; /* link j3: motion */
+    /* link j3: force and moment */
     const yaw3pitch_real_t t92 = parameters[XX3R] * t89 + parameters[ZZ3R] * t89 + parameters[XY3] * t90
         + parameters[XZ3R] * t91;
-    const yaw3pitch_real_t t93 = t67 * t67;
+    const yaw3pitch_real_t t93 = t67 * t67; /* link j3: motion */
     const yaw3pitch_real_t t94 = t69 * t69;
+    /* link j4: what it passes on */
     const yaw3pitch_real_t t95 = t92 + parameters[YZ3] * (t94 - t93) + parameters[MY3] * t81 + (t1 * t83
         + t0 * t88);
+    /* link j4: force and moment */
     const yaw3pitch_real_t t96 = parameters[MX4] * t74 + parameters[MY4] * t85;
-    const yaw3pitch_real_t t97 = parameters[ZZ3R] - parameters[XX3R];
-    const yaw3pitch_real_t t98 = YAW3PITCH_C(-2.0) * t89;
-    const yaw3pitch_real_t t99 = t66 * t66;
+    const yaw3pitch_real_t t97 = parameters[ZZ3R] - parameters[XX3R]; /* link j3: force and moment */
+    const yaw3pitch_real_t t98 = YAW3PITCH_C(-2.0) * t89; /* link j4: motion */
+    const yaw3pitch_real_t t99 = t66 * t66; /* link j3: motion */
+    /* link j3: force and moment */
     const yaw3pitch_real_t t100 = parameters[XY3] * t98 - t79 * t97 + parameters[YZ3] * t91
         - parameters[XZ3R] * (t99 - t94);
+    /* link j4: what it passes on */
     const yaw3pitch_real_t t101 = t100 + parameters[MX3R] * t81 - (t0 * t83 - t1 * t88
         + YAW3PITCH_C(0.7) * t96);
-    const yaw3pitch_real_t t102 = dq[1] * t65;
-    const yaw3pitch_real_t t103 = parameters[ZZ2R] * t102;
-    const yaw3pitch_real_t t104 = YAW3PITCH_C(2.0) * t80;
+    const yaw3pitch_real_t t102 = dq[1] * t65; /* link j2: motion */
+    const yaw3pitch_real_t t103 = parameters[ZZ2R] * t102; /* link j2: force and moment */
+    const yaw3pitch_real_t t104 = YAW3PITCH_C(2.0) * t80; /* link j2: motion */
     const yaw3pitch_real_t t105 = t64 * t65;
+    /* link j2: force and moment */
     const yaw3pitch_real_t t106 = parameters[XY2] * t104 - (parameters[XX2R] * t102 + t103)
         - parameters[XZ2R] * t105;
-    const yaw3pitch_real_t t107 = t65 * t65;
+    const yaw3pitch_real_t t107 = t65 * t65; /* link j2: motion */
     const yaw3pitch_real_t t108 = dq[1] * dq[1];
-    const yaw3pitch_real_t t109 = parameters[YZ2] * (t107 - t108);
+    const yaw3pitch_real_t t109 = parameters[YZ2] * (t107 - t108); /* link j2: force and moment */
+    /* link j2: what it passes on */
     const yaw3pitch_real_t t110 = t39 * (t106 - t109 + (t14 * t95 + t12 * t101));
+    /* link j4: what it passes on */
     const yaw3pitch_real_t t111 = parameters[MX3R] * t90 + parameters[MY3] * t98 + t96;
-    const yaw3pitch_real_t t112 = t80 * (parameters[ZZ2R] - parameters[XX2R]);
-    const yaw3pitch_real_t t113 = YAW3PITCH_C(2.0) * t102;
+    const yaw3pitch_real_t t112 = t80 * (parameters[ZZ2R] - parameters[XX2R]); /* link j2: force and moment */
+    const yaw3pitch_real_t t113 = YAW3PITCH_C(2.0) * t102; /* link j2: motion */
     const yaw3pitch_real_t t114 = t64 * t64;
-    const yaw3pitch_real_t t115 = parameters[XZ2R] * (t114 - t108);
+    const yaw3pitch_real_t t115 = parameters[XZ2R] * (t114 - t108); /* link j2: force and moment */
+    /* link j3: what it passes on */
     const yaw3pitch_real_t t116 = t112 - parameters[XY2] * t113 + parameters[YZ2] * t105 + t115 + (t12 * t95
         - t14 * t101 + YAW3PITCH_C(0.8) * t111);
+    /* link j2: what it passes on */
     const yaw3pitch_real_t t117 = t110 + t36 * t116 + YAW3PITCH_C(0.12) * (parameters[MX2R] * t104
         + parameters[MY2] * t113 + t111);
-    const yaw3pitch_real_t t118 = YAW3PITCH_C(-0.12) * (dq[0] * dq[0]);
+    const yaw3pitch_real_t t118 = YAW3PITCH_C(-0.12) * (dq[0] * dq[0]); /* link j2: motion */
     const yaw3pitch_real_t t119 = t36 * t118 + YAW3PITCH_C(9.81) * t39;
-    const yaw3pitch_real_t t120 = t119 + YAW3PITCH_C(-0.8) * (t107 + t108);
+    const yaw3pitch_real_t t120 = t119 + YAW3PITCH_C(-0.8) * (t107 + t108); /* link j3: motion */
     const yaw3pitch_real_t t121 = t14 * t120;
-    const yaw3pitch_real_t t122 = t39 * t118 + YAW3PITCH_C(-9.81) * t36;
-    const yaw3pitch_real_t t123 = YAW3PITCH_C(0.8) * t105 - t122;
+    const yaw3pitch_real_t t122 = t39 * t118 + YAW3PITCH_C(-9.81) * t36; /* link j2: motion */
+    const yaw3pitch_real_t t123 = YAW3PITCH_C(0.8) * t105 - t122; /* link j3: motion */
     const yaw3pitch_real_t t124 = t121 + t12 * t123;
-    const yaw3pitch_real_t t125 = t93 + t94;
+    const yaw3pitch_real_t t125 = t93 + t94; /* link j4: motion */
     const yaw3pitch_real_t t126 = YAW3PITCH_C(0.7) * t125 - t124;
-    const yaw3pitch_real_t t127 = t12 * t120;
+    const yaw3pitch_real_t t127 = t12 * t120; /* link j3: motion */
     const yaw3pitch_real_t t128 = t14 * t123 - t127;
-    const yaw3pitch_real_t t129 = t128 - YAW3PITCH_C(0.7) * t91;
+    const yaw3pitch_real_t t129 = t128 - YAW3PITCH_C(0.7) * t91; /* link j4: motion */
+    /* link j4: force and moment */
     const yaw3pitch_real_t t130 = parameters[MX4] * (t0 * t126 + t1 * t129) + parameters[MY4] * (t1 * t126
         - t0 * t129);
     const yaw3pitch_real_t t131 = parameters[XX4R] * t75 + parameters[XY4] * (t86 - t77) + t130;
     const yaw3pitch_real_t t132 = input[3] - t131;
     const yaw3pitch_real_t t133 = parameters[MX4] * (t77 + t78) + parameters[MY4] * t75;
     const yaw3pitch_real_t t134 = parameters[MX4] * t75 + parameters[MY4] * (t86 + t78);
-    const yaw3pitch_real_t t135 = t0 * t133 + t1 * t134;
+    const yaw3pitch_real_t t135 = t0 * t133 + t1 * t134; /* link j4: what it passes on */
+    /* link j3: force and moment */
     const yaw3pitch_real_t t136 = parameters[XX3R] * t91 + parameters[XY3] * (t99 - t93)
         + (parameters[MX3R] * t128 - parameters[MY3] * t124);
-    const yaw3pitch_real_t t137 = t136 + (t131 - YAW3PITCH_C(0.7) * t135);
+    const yaw3pitch_real_t t137 = t136 + (t131 - YAW3PITCH_C(0.7) * t135); /* link j4: what it passes on */
     const yaw3pitch_real_t t138 = input[2] - t137 + t132 * t5;
     const yaw3pitch_real_t t139 = parameters[MX3R] * t125 + parameters[MY3] * t91 + (t1 * t133 - t0 * t134);
+    /* link j3: what it passes on */
     const yaw3pitch_real_t t140 = t14 * (parameters[MX3R] * t91 + parameters[MY3] * (t99 + t94) + t135);
+    /* link j2: force and moment */
     const yaw3pitch_real_t t141 = parameters[XX2R] * t105 - parameters[XY2] * (t114 - t107)
         + (parameters[MX2R] * t122 + parameters[MY2] * t119);
     const yaw3pitch_real_t t142 = input[1] + (t141 - (t137 - YAW3PITCH_C(0.8) * (t12 * t139 + t140)));
@@ -300,9 +325,9 @@ int yaw3pitch_forward_dynamics_derivatives(
     ddq[2] = -t148;
     const yaw3pitch_real_t t149 = yaw3pitch_bounded(t132 * t4 + t50 * t146 + t22 * t147 - t5 * t148);
     ddq[3] = t149;
-    const yaw3pitch_real_t t150 = t39 * t14 + t36 * t12;
+    const yaw3pitch_real_t t150 = t39 * t14 + t36 * t12; /* link j3: motion */
     const yaw3pitch_real_t t151 = t36 * t14 - t39 * t12;
-    const yaw3pitch_real_t t152 = t0 * t150 - t1 * t151;
+    const yaw3pitch_real_t t152 = t0 * t150 - t1 * t151; /* link j4: motion */
     const yaw3pitch_real_t t153 = dq[0] * t152;
     const yaw3pitch_real_t t154 = parameters[XZ4] * t153;
     const yaw3pitch_real_t t155 = parameters[XY4] * t70;
@@ -315,21 +340,24 @@ int yaw3pitch_forward_dynamics_derivatives(
     const yaw3pitch_real_t t162 = parameters[XX4R] - t161;
     const yaw3pitch_real_t t163 = t70 * t162 - parameters[XZ4] * t158;
     const yaw3pitch_real_t t164 = parameters[YZ4] * t153 - t70 * t161;
+    /* link j4: inertia, momentum beyond */
     const yaw3pitch_real_t t165 = t1 * (t156 + t160) + t0 * (t163 - t164);
     const yaw3pitch_real_t t166 = t1 * t165;
     const yaw3pitch_real_t t167 = parameters[MY4] * t70;
     const yaw3pitch_real_t t168 = parameters[MX4] * t70;
     const yaw3pitch_real_t t169 = t1 * t167 + t0 * t168;
     const yaw3pitch_real_t t170 = YAW3PITCH_C(0.7) * t169;
-    const yaw3pitch_real_t t171 = YAW3PITCH_C(0.7) * t69;
-    const yaw3pitch_real_t t172 = t10 * t171;
+    const yaw3pitch_real_t t171 = YAW3PITCH_C(0.7) * t69; /* link j4: velocity of its origin */
+    const yaw3pitch_real_t t172 = t10 * t171; /* link j4: inertia, momentum beyond */
     const yaw3pitch_real_t t173 = t172 - t170;
-    const yaw3pitch_real_t t174 = dq[0] * t151;
+    const yaw3pitch_real_t t174 = dq[0] * t151; /* link j3: motion */
     const yaw3pitch_real_t t175 = parameters[XZ3R] * t174;
     const yaw3pitch_real_t t176 = parameters[XY3] * t69;
+    /* link j4: inertia, momentum beyond */
     const yaw3pitch_real_t t177 = t175 - t176 + (t173 + (t160 - t166 + t170));
-    const yaw3pitch_real_t t178 = dq[0] * t150;
+    const yaw3pitch_real_t t178 = dq[0] * t150; /* link j3: motion */
     const yaw3pitch_real_t t179 = parameters[YZ3] * t178;
+    /* link j4: inertia, momentum beyond */
     const yaw3pitch_real_t t180 = t176 - t179 - (t156 - t166 + t172 - t173);
     const yaw3pitch_real_t t181 = t0 * t165;
     const yaw3pitch_real_t t182 = YAW3PITCH_C(0.5) * (parameters[XX3R] + parameters[ZZ3R]);
@@ -338,14 +366,15 @@ int yaw3pitch_forward_dynamics_derivatives(
     const yaw3pitch_real_t t185 = parameters[XX3R] - t182;
     const yaw3pitch_real_t t186 = t69 * t185 - parameters[XZ3R] * t178 + (t163 - t181
         + (YAW3PITCH_C(0.7) * t184 + t2 * t171));
+    /* link j3: inertia, momentum beyond */
     const yaw3pitch_real_t t187 = t14 * (t177 - t180) + t12 * (t183 - t186);
     const yaw3pitch_real_t t188 = t14 * t187;
-    const yaw3pitch_real_t t189 = parameters[MY3] * t69 + t169;
+    const yaw3pitch_real_t t189 = parameters[MY3] * t69 + t169; /* link j4: inertia, momentum beyond */
     const yaw3pitch_real_t t190 = t184 - parameters[MX3R] * t69;
-    const yaw3pitch_real_t t191 = t14 * t189 - t12 * t190;
+    const yaw3pitch_real_t t191 = t14 * t189 - t12 * t190; /* link j3: inertia, momentum beyond */
     const yaw3pitch_real_t t192 = YAW3PITCH_C(0.8) * t191;
-    const yaw3pitch_real_t t193 = YAW3PITCH_C(0.8) * dq[1];
-    const yaw3pitch_real_t t194 = t37 * t193;
+    const yaw3pitch_real_t t193 = YAW3PITCH_C(0.8) * dq[1]; /* link j3: velocity of its origin */
+    const yaw3pitch_real_t t194 = t37 * t193; /* link j3: inertia, momentum beyond */
     const yaw3pitch_real_t t195 = t192 + t194;
     const yaw3pitch_real_t t196 = parameters[XZ2R] * t65;
     const yaw3pitch_real_t t197 = parameters[XY2] * dq[1];
@@ -359,44 +388,50 @@ int yaw3pitch_forward_dynamics_derivatives(
     const yaw3pitch_real_t t205 = parameters[XX2R] - t202;
     const yaw3pitch_real_t t206 = dq[1] * t205 - parameters[XZ2R] * t64 + (t186 + t201
         + (YAW3PITCH_C(0.8) * t204 + t15 * t193));
+    /* link j2: inertia, momentum beyond */
     const yaw3pitch_real_t t207 = t36 * (t36 * (t200 - t198) + t39 * (t203 + t206));
-    const yaw3pitch_real_t t208 = parameters[MY2] * dq[1] + t191;
+    const yaw3pitch_real_t t208 = parameters[MY2] * dq[1] + t191; /* link j3: inertia, momentum beyond */
     const yaw3pitch_real_t t209 = t204 - parameters[MX2R] * dq[1];
+    /* link j2: inertia, momentum beyond */
     const yaw3pitch_real_t t210 = t198 + t207 + YAW3PITCH_C(0.12) * (t39 * t209 - t36 * t208);
-    const yaw3pitch_real_t t211 = YAW3PITCH_C(2.0) * t210;
+    const yaw3pitch_real_t t211 = YAW3PITCH_C(2.0) * t210; /* link j1: derivatives */
     const yaw3pitch_real_t t212 = t61 * t145;
     const yaw3pitch_real_t t213 = parameters[XY4] * t158 + t153 * t162;
     const yaw3pitch_real_t t214 = t158 * t161 - parameters[XY4] * t153;
     const yaw3pitch_real_t t215 = parameters[MY4] * t158 + parameters[MX4] * t153;
     const yaw3pitch_real_t t216 = YAW3PITCH_C(-0.7) * t174;
+    /* link j4: inertia, momentum beyond */
     const yaw3pitch_real_t t217 = t1 * t213 + t0 * t214 - (YAW3PITCH_C(0.7) * t215 - t2 * t216);
     const yaw3pitch_real_t t218 = parameters[XY3] * t178 - t174 * t185 + t217;
     const yaw3pitch_real_t t219 = t178 * t182 + parameters[XY3] * t174 + (t1 * t214 - t0 * t213 + t10 * t216);
     const yaw3pitch_real_t t220 = parameters[MX3R] * t174 - parameters[MY3] * t178 - t215;
-    const yaw3pitch_real_t t221 = YAW3PITCH_C(-0.8) * t65;
+    const yaw3pitch_real_t t221 = YAW3PITCH_C(-0.8) * t65; /* link j3: velocity of its origin */
+    /* link j3: inertia, momentum beyond */
     const yaw3pitch_real_t t222 = t14 * t218 + t12 * t219 + (YAW3PITCH_C(0.8) * t220 + t15 * t221);
+    /* link j2: derivatives */
     const yaw3pitch_real_t t223 = YAW3PITCH_C(2.0) * (parameters[XY2] * t64 - t65 * t205 + t222);
+    /* link j3: inertia, momentum beyond */
     const yaw3pitch_real_t t224 = parameters[XY2] * t65 + t64 * t202 - (t12 * t218 - t14 * t219 + t37 * t221);
-    const yaw3pitch_real_t t225 = YAW3PITCH_C(2.0) * t224;
+    const yaw3pitch_real_t t225 = YAW3PITCH_C(2.0) * t224; /* link j2: derivatives */
     const yaw3pitch_real_t t226 = YAW3PITCH_C(0.24) * dq[0];
     const yaw3pitch_real_t t227 = t39 * t223 - t36 * t225 + (t39 * t42 - t36 * t41) * t226;
     const yaw3pitch_real_t t228 = t145 * (t56 - t21 * t61);
-    const yaw3pitch_real_t t229 = YAW3PITCH_C(2.0) * t218;
+    const yaw3pitch_real_t t229 = YAW3PITCH_C(2.0) * t218; /* link j3: derivatives */
     const yaw3pitch_real_t t230 = YAW3PITCH_C(2.0) * t219;
-    const yaw3pitch_real_t t231 = YAW3PITCH_C(-1.6) * t65;
-    const yaw3pitch_real_t t232 = t14 * t229 + t12 * t230 + t15 * t231;
+    const yaw3pitch_real_t t231 = YAW3PITCH_C(-1.6) * t65; /* link j4: derivatives */
+    const yaw3pitch_real_t t232 = t14 * t229 + t12 * t230 + t15 * t231; /* link j3: derivatives */
     const yaw3pitch_real_t t233 = t12 * t229 - t14 * t230 + t37 * t231;
     const yaw3pitch_real_t t234 = t39 * t232 + t36 * t233 - (t36 * t37 + t39 * t15) * t226;
     const yaw3pitch_real_t t235 = t22 - t5 * t21;
     const yaw3pitch_real_t t236 = yaw3pitch_bounded(t145 * (t50 - t5 * t56 - t61 * t235));
-    const yaw3pitch_real_t t237 = YAW3PITCH_C(-2.0) * t213;
+    const yaw3pitch_real_t t237 = YAW3PITCH_C(-2.0) * t213; /* link j4: derivatives */
     const yaw3pitch_real_t t238 = YAW3PITCH_C(2.0) * t214;
     const yaw3pitch_real_t t239 = YAW3PITCH_C(-1.4) * t174;
     const yaw3pitch_real_t t240 = t0 * t238 - t1 * t237 + t2 * t239;
     const yaw3pitch_real_t t241 = t0 * t237 + t1 * t238 + t10 * t239;
     const yaw3pitch_real_t t242 = t14 * t240 + t12 * t241 + t17 * t231;
-    const yaw3pitch_real_t t243 = t14 * t10 - t12 * t2;
-    const yaw3pitch_real_t t244 = t12 * t240 - t14 * t241 - t243 * t231;
+    const yaw3pitch_real_t t243 = t14 * t10 - t12 * t2; /* link j4: column of the mass matrix */
+    const yaw3pitch_real_t t244 = t12 * t240 - t14 * t241 - t243 * t231; /* link j4: derivatives */
     const yaw3pitch_real_t t245 = t39 * t242 + t36 * t244 + (t36 * t243 - t39 * t17) * t226;
     const yaw3pitch_real_t t246 = t227 * t212 - t145 * t211 + t234 * t228 - t245 * t236;
     ddq_by_dq[0] = t246;
@@ -418,7 +453,7 @@ int yaw3pitch_forward_dynamics_derivatives(
     ddq_by_input[12] = t236;
     const yaw3pitch_real_t t256 = t147 - t148;
     const yaw3pitch_real_t t257 = t149 + t256;
-    const yaw3pitch_real_t t258 = t158 * t153;
+    const yaw3pitch_real_t t258 = t158 * t153; /* link j4: motion */
     const yaw3pitch_real_t t259 = t258 - t257;
     const yaw3pitch_real_t t260 = t146 * t157;
     const yaw3pitch_real_t t261 = t70 * t153;
@@ -434,18 +469,18 @@ int yaw3pitch_forward_dynamics_derivatives(
     const yaw3pitch_real_t t270 = t80 + (t80 - t269);
     const yaw3pitch_real_t t271 = t268 + YAW3PITCH_C(0.8) * t270;
     const yaw3pitch_real_t t272 = t146 * t151;
-    const yaw3pitch_real_t t273 = t69 * t178;
+    const yaw3pitch_real_t t273 = t69 * t178; /* link j3: motion */
     const yaw3pitch_real_t t274 = t273 + (t273 - t272);
     const yaw3pitch_real_t t275 = t271 + YAW3PITCH_C(0.7) * t274;
     const yaw3pitch_real_t t276 = parameters[YZ4] * (t78 - t267) + t266 - parameters[MY4] * t275;
     const yaw3pitch_real_t t277 = t258 + t257;
     const yaw3pitch_real_t t278 = t261 + t262;
-    const yaw3pitch_real_t t279 = t158 * t158;
+    const yaw3pitch_real_t t279 = t158 * t158; /* link j4: motion */
     const yaw3pitch_real_t t280 = parameters[XZ4] * (t279 - t78) + (parameters[XY4] * t278 - t84 * t264
         - parameters[YZ4] * t277);
     const yaw3pitch_real_t t281 = t280 + parameters[MX4] * t275;
     const yaw3pitch_real_t t282 = t146 * t150;
-    const yaw3pitch_real_t t283 = t69 * t174;
+    const yaw3pitch_real_t t283 = t69 * t174; /* link j3: motion */
     const yaw3pitch_real_t t284 = t283 + t282;
     const yaw3pitch_real_t t285 = t178 * t174;
     const yaw3pitch_real_t t286 = t285 + t256;
@@ -497,22 +532,28 @@ int yaw3pitch_forward_dynamics_derivatives(
     const yaw3pitch_real_t t322 = parameters[YZ4] * t70 + t153 * t321;
     const yaw3pitch_real_t t323 = t158 * t321 - parameters[XZ4] * t70;
     const yaw3pitch_real_t t324 = t182 - parameters[ZZ3R];
+    /* link j4: inertia, momentum beyond */
     const yaw3pitch_real_t t325 = t0 * t323 - t1 * t322 - (parameters[YZ3] * t69 + t174 * t324);
     const yaw3pitch_real_t t326 = parameters[XZ3R] * t69 + t178 * t324 - (t0 * t322 + t1 * t323);
     const yaw3pitch_real_t t327 = parameters[ZZ2R] - t202;
+    /* link j3: inertia, momentum beyond */
     const yaw3pitch_real_t t328 = t65 * t327 - parameters[YZ2] * dq[1] + (t14 * t325 - t12 * t326);
+    /* link j2: derivatives */
     const yaw3pitch_real_t t329 = t39 * (YAW3PITCH_C(2.0) * t328 + (t35 * t301 + t38 * t302));
+    /* link j3: inertia, momentum beyond */
     const yaw3pitch_real_t t330 = parameters[XZ2R] * dq[1] - t64 * t327 + (t12 * t325 + t14 * t326);
+    /* link j2: derivatives */
     const yaw3pitch_real_t t331 = t36 * (YAW3PITCH_C(2.0) * t330 + (t38 * t301 + t34 * t302));
     const yaw3pitch_real_t t332 = t329 + t331 + YAW3PITCH_C(0.12) * (t41 * t301 + t42 * t302);
     const yaw3pitch_real_t t333 = t154 + t159;
-    const yaw3pitch_real_t t334 = t179 - t175 + (t333 + t173);
+    const yaw3pitch_real_t t334 = t179 - t175 + (t333 + t173); /* link j4: inertia, momentum beyond */
+    /* link j2: derivatives */
     const yaw3pitch_real_t t335 = YAW3PITCH_C(2.0) * (t199 - t196 + (t334 - t195))
         + YAW3PITCH_C(2.0) * (t57 * t65 + t58 * t64);
-    const yaw3pitch_real_t t336 = YAW3PITCH_C(2.0) * t334;
+    const yaw3pitch_real_t t336 = YAW3PITCH_C(2.0) * t334; /* link j3: derivatives */
     const yaw3pitch_real_t t337 = YAW3PITCH_C(1.6) * dq[1];
     const yaw3pitch_real_t t338 = t336 - t37 * t337 + YAW3PITCH_C(2.0) * (t54 * t64 - t53 * t65);
-    const yaw3pitch_real_t t339 = YAW3PITCH_C(2.0) * t333;
+    const yaw3pitch_real_t t339 = YAW3PITCH_C(2.0) * t333; /* link j4: derivatives */
     const yaw3pitch_real_t t340 = t339 + t10 * (YAW3PITCH_C(1.4) * t69);
     const yaw3pitch_real_t t341 = t340 + t243 * t337 + YAW3PITCH_C(2.0) * (t48 * t64 - t47 * t65);
     const yaw3pitch_real_t t342 = t335 * t212 - t145 * t332 + t338 * t228 - t341 * t236;
@@ -527,7 +568,7 @@ int yaw3pitch_forward_dynamics_derivatives(
     ddq_by_input[5] = t247;
     ddq_by_input[9] = t248;
     ddq_by_input[13] = t249;
-    const yaw3pitch_real_t t346 = t293 + t288;
+    const yaw3pitch_real_t t346 = t293 + t288; /* link j4: motion */
     const yaw3pitch_real_t t347 = YAW3PITCH_C(-2.0) * t174;
     const yaw3pitch_real_t t348 = YAW3PITCH_C(-2.0) * t178;
     const yaw3pitch_real_t t349 = t51 * t346 + (t30 * t272 + t31 * t282) - (t347 * t177 + t348 * t183);
@@ -562,6 +603,7 @@ int yaw3pitch_forward_dynamics_derivatives(
     ddq_by_q[10] = t373;
     const yaw3pitch_real_t t374 = t252 * t368 - (t236 * t355 + t249 * t367) - t254 * t370;
     ddq_by_q[14] = t374;
+    /* link j3: derivatives */
     const yaw3pitch_real_t t375 = YAW3PITCH_C(2.0) * t325 - (t30 * t347 + t31 * t348);
     const yaw3pitch_real_t t376 = YAW3PITCH_C(2.0) * t326 + (t31 * t347 + t29 * t348);
     const yaw3pitch_real_t t377 = t11 * t347 - t13 * t348;
@@ -571,6 +613,7 @@ int yaw3pitch_forward_dynamics_derivatives(
         + t14 * (YAW3PITCH_C(-2.0) * t189));
     const yaw3pitch_real_t t381 = t336 + (t51 * t347 + t52 * t348) + t380;
     const yaw3pitch_real_t t382 = t336 + YAW3PITCH_C(-2.0) * (t51 * t174 + t52 * t178);
+    /* link j4: derivatives */
     const yaw3pitch_real_t t383 = t340 + YAW3PITCH_C(-2.0) * (t45 * t174 + t46 * t178);
     const yaw3pitch_real_t t384 = t381 * t212 - t145 * t379 + t382 * t228 - t383 * t236;
     ddq_by_dq[2] = t384;
@@ -584,7 +627,7 @@ int yaw3pitch_forward_dynamics_derivatives(
     ddq_by_input[6] = t248;
     ddq_by_input[10] = -t251;
     ddq_by_input[14] = -t252;
-    const yaw3pitch_real_t t388 = t279 + t267;
+    const yaw3pitch_real_t t388 = t279 + t267; /* link j4: force and moment */
     const yaw3pitch_real_t t389 = YAW3PITCH_C(2.0) * t153;
     const yaw3pitch_real_t t390 = YAW3PITCH_C(2.0) * t158;
     const yaw3pitch_real_t t391 = t389 * t156 + t390 * t164 - (parameters[XZ4] * t388
@@ -619,6 +662,7 @@ int yaw3pitch_forward_dynamics_derivatives(
     ddq_by_q[11] = t413;
     const yaw3pitch_real_t t414 = t252 * t408 - (t236 * t399 + t249 * t409) - t254 * t410;
     ddq_by_q[15] = t414;
+    /* link j4: derivatives */
     const yaw3pitch_real_t t415 = YAW3PITCH_C(-2.0) * t322 - (parameters[XY4] * t390
         + parameters[XX4R] * t389);
     const yaw3pitch_real_t t416 = parameters[XY4] * t389 + YAW3PITCH_C(2.0) * t323;

@@ -15,9 +15,9 @@
  *                                                           norm at most 1e+09
  * @param[in]   parameters    [40]                           standard parameters; norm at most 1e+09
  * @param[out]  ddq           [4]   [rad/s^2]                joint accelerations
- * @param[out]  ddq_by_q      [16]  [(rad/s^2) per (rad)]    d ddq / d q; 4 x 4, row-major
+ * @param[out]  ddq_by_q      [16]  [(rad/s^2) per rad]      d ddq / d q; 4 x 4, row-major
  * @param[out]  ddq_by_dq     [16]  [(rad/s^2) per (rad/s)]  d ddq / d dq; 4 x 4, row-major
- * @param[out]  ddq_by_input  [16]  [(rad/s^2) per (N m)]    d ddq / d input; 4 x 4, row-major
+ * @param[out]  ddq_by_input  [16]  [(rad/s^2) per N m]      d ddq / d input; 4 x 4, row-major
  *
  * Coordinates:
  *
@@ -71,11 +71,11 @@
  */
 #include "yaw3pitch_private.h"
 
-#if YAW3PITCH_GENERATION != 0x7BB9A1E4UL
+#if YAW3PITCH_GENERATION != 0x14CEE2C4UL
 #error "yaw3pitch.h and yaw3pitch_forward_dynamics_derivatives_standard.c are of different generations: generate the arm again"
 #endif
 
-int yaw3pitch_forward_dynamics_derivatives_standard(
+yaw3pitch_status_t yaw3pitch_forward_dynamics_derivatives_standard(
     const yaw3pitch_real_t q[YAW3PITCH_N_JOINTS],
     const yaw3pitch_real_t dq[YAW3PITCH_N_JOINTS],
     const yaw3pitch_real_t input[YAW3PITCH_N_JOINTS],
@@ -88,7 +88,7 @@ int yaw3pitch_forward_dynamics_derivatives_standard(
     enum { XX1 = 0, XY1, XZ1, YY1, YZ1, ZZ1, MX1, MY1, MZ1, M1, XX2, XY2, XZ2, YY2, YZ2, ZZ2, MX2, MY2, MZ2,
         M2, XX3, XY3, XZ3, YY3, YZ3, ZZ3, MX3, MY3, MZ3, M3, XX4, XY4, XZ4, YY4, YZ4, ZZ4, MX4, MY4, MZ4, M4
         };
-    int status = YAW3PITCH_STATUS_OK;
+    yaw3pitch_status_t status = YAW3PITCH_STATUS_OK;
 
     if (!yaw3pitch_within_joints(q, YAW3PITCH_C(1.0e8))
         || !yaw3pitch_within_joints(dq, YAW3PITCH_C(1.0e10))
@@ -117,10 +117,12 @@ int yaw3pitch_forward_dynamics_derivatives_standard(
         yaw3pitch_zero(ddq_by_input, 16);
         return YAW3PITCH_STATUS_PIVOT;
     }
+    /* link j4: column of the mass matrix */
     const yaw3pitch_real_t t2 = t0 * parameters[MY4] - t1 * parameters[MX4];
     const yaw3pitch_real_t t3 = YAW3PITCH_C(0.7) * t2 - parameters[ZZ4];
     const yaw3pitch_real_t t4 = YAW3PITCH_C(1.0) / parameters[ZZ4];
     const yaw3pitch_real_t t5 = t3 * t4;
+    /* link j4: inertia of it and all beyond */
     const yaw3pitch_real_t t6 = YAW3PITCH_C(-0.7) * parameters[M4];
     const yaw3pitch_real_t t7 = YAW3PITCH_C(0.7) * (t6 + YAW3PITCH_C(2.0) * t2);
     const yaw3pitch_real_t t8 = parameters[ZZ3] - (t7 - parameters[ZZ4]);
@@ -140,20 +142,21 @@ int yaw3pitch_forward_dynamics_derivatives_standard(
         yaw3pitch_zero(ddq_by_input, 16);
         return YAW3PITCH_STATUS_PIVOT;
     }
+    /* link j4: column of the mass matrix */
     const yaw3pitch_real_t t11 = t1 * parameters[MY4] + t0 * parameters[MX4];
-    const yaw3pitch_real_t t12 = parameters[MY3] + t11;
+    const yaw3pitch_real_t t12 = parameters[MY3] + t11; /* link j4: inertia of it and all beyond */
     const yaw3pitch_real_t t14 = t2 + t6;
     const yaw3pitch_real_t t15 = t14 - parameters[MX3];
-    const yaw3pitch_real_t t17 = t13 * t12 + t16 * t15;
+    const yaw3pitch_real_t t17 = t13 * t12 + t16 * t15; /* link j3: column of the mass matrix */
     const yaw3pitch_real_t t18 = YAW3PITCH_C(0.8) * t17 - t8;
-    const yaw3pitch_real_t t19 = t13 * t11 + t16 * t2;
+    const yaw3pitch_real_t t19 = t13 * t11 + t16 * t2; /* link j4: column of the mass matrix */
     const yaw3pitch_real_t t20 = t3 + YAW3PITCH_C(0.8) * t19;
     const yaw3pitch_real_t t21 = t18 + t20 * t5;
     const yaw3pitch_real_t t22 = YAW3PITCH_C(-1.0) / t9;
     const yaw3pitch_real_t t23 = t21 * t22;
     const yaw3pitch_real_t t24 = t20 * t4;
-    const yaw3pitch_real_t t25 = parameters[M3] + parameters[M4];
-    const yaw3pitch_real_t t26 = YAW3PITCH_C(0.8) * t25;
+    const yaw3pitch_real_t t25 = parameters[M3] + parameters[M4]; /* link j4: inertia of it and all beyond */
+    const yaw3pitch_real_t t26 = YAW3PITCH_C(0.8) * t25; /* link j3: inertia of it and all beyond */
     const yaw3pitch_real_t t27 = YAW3PITCH_C(0.8) * (t26 - YAW3PITCH_C(2.0) * t17);
     const yaw3pitch_real_t t28 = parameters[ZZ2] + (t8 + t27);
     const yaw3pitch_real_t t29 = yaw3pitch_bounded(t28 - t20 * t24 + t21 * t23);
@@ -172,38 +175,47 @@ int yaw3pitch_forward_dynamics_derivatives_standard(
         yaw3pitch_zero(ddq_by_input, 16);
         return YAW3PITCH_STATUS_PIVOT;
     }
+    /* link j4: inertia of it and all beyond */
     const yaw3pitch_real_t t31 = parameters[YY4] - parameters[XX4];
     const yaw3pitch_real_t t32 = t1 * t31 + parameters[XY4] * (YAW3PITCH_C(2.0) * t0);
     const yaw3pitch_real_t t33 = t1 * t32;
     const yaw3pitch_real_t t34 = parameters[YY3] + (parameters[XX4] + t33 - t7);
     const yaw3pitch_real_t t35 = parameters[XX3] + (parameters[YY4] - t33);
     const yaw3pitch_real_t t36 = t0 * t32 - parameters[XY4] + YAW3PITCH_C(0.7) * t11 - parameters[XY3];
+    /* link j3: inertia of it and all beyond */
     const yaw3pitch_real_t t37 = t16 * (t35 - t34) - t36 * (YAW3PITCH_C(-2.0) * t13);
     const yaw3pitch_real_t t38 = t16 * t37;
     const yaw3pitch_real_t t39 = parameters[XX2] + (t34 + t38);
     const yaw3pitch_real_t t40 = parameters[YY2] + (t35 - t38 + t27);
-    const yaw3pitch_real_t t42 = t13 * t15 - t16 * t12;
+    const yaw3pitch_real_t t42 = t13 * t15 - t16 * t12; /* link j3: column of the mass matrix */
+    /* link j3: inertia of it and all beyond */
     const yaw3pitch_real_t t43 = parameters[XY2] + (t13 * t37 - t36 + YAW3PITCH_C(0.8) * t42);
+    /* link j2: inertia of it and all beyond */
     const yaw3pitch_real_t t45 = t41 * (t41 * (t40 - t39) + t43 * (YAW3PITCH_C(2.0) * t44));
-    const yaw3pitch_real_t t46 = t42 - parameters[MY2];
+    const yaw3pitch_real_t t46 = t42 - parameters[MY2]; /* link j3: inertia of it and all beyond */
     const yaw3pitch_real_t t47 = t26 - t17;
     const yaw3pitch_real_t t48 = parameters[MX2] + t47;
+    /* link j2: inertia of it and all beyond */
     const yaw3pitch_real_t t49 = YAW3PITCH_C(0.12) * (parameters[M2] + t25) + YAW3PITCH_C(2.0) * (t44 * t46
         + t41 * t48);
     const yaw3pitch_real_t t50 = parameters[ZZ1] + (t39 + t45 + YAW3PITCH_C(0.12) * t49);
+    /* link j4: column of the mass matrix */
     const yaw3pitch_real_t t51 = t0 * parameters[YZ4] - t1 * parameters[XZ4];
     const yaw3pitch_real_t t52 = t0 * parameters[XZ4] + t1 * parameters[YZ4];
     const yaw3pitch_real_t t53 = t16 * t51 + t13 * t52;
     const yaw3pitch_real_t t54 = t13 * t51 - t16 * t52;
     const yaw3pitch_real_t t55 = t44 * t53 + t41 * t54;
     const yaw3pitch_real_t t56 = t55 * t4;
+    /* link j4: inertia of it and all beyond */
     const yaw3pitch_real_t t57 = t51 + YAW3PITCH_C(0.7) * parameters[MZ4] - parameters[XZ3];
     const yaw3pitch_real_t t58 = parameters[YZ3] + t52;
-    const yaw3pitch_real_t t59 = t16 * t57 + t13 * t58;
+    const yaw3pitch_real_t t59 = t16 * t57 + t13 * t58; /* link j3: column of the mass matrix */
     const yaw3pitch_real_t t60 = t13 * t57 - t16 * t58;
     const yaw3pitch_real_t t61 = t44 * t59 + t41 * t60 + t55 * t5;
     const yaw3pitch_real_t t62 = t61 * t22;
+    /* link j4: inertia of it and all beyond */
     const yaw3pitch_real_t t63 = parameters[MZ3] + parameters[MZ4];
+    /* link j3: inertia of it and all beyond */
     const yaw3pitch_real_t t64 = parameters[XZ2] + (YAW3PITCH_C(-0.8) * t63 - t59);
     const yaw3pitch_real_t t65 = t60 - parameters[YZ2];
     const yaw3pitch_real_t t66 = t44 * t64 - t41 * t65 - t55 * t24 + t61 * t23;
@@ -225,98 +237,113 @@ int yaw3pitch_forward_dynamics_derivatives_standard(
         yaw3pitch_zero(ddq_by_input, 16);
         return YAW3PITCH_STATUS_PIVOT;
     }
-    const yaw3pitch_real_t t71 = t44 * dq[0];
+    const yaw3pitch_real_t t71 = t44 * dq[0]; /* link j2: motion */
     const yaw3pitch_real_t t72 = t41 * dq[0];
-    const yaw3pitch_real_t t73 = t16 * t71 + t13 * t72;
+    const yaw3pitch_real_t t73 = t16 * t71 + t13 * t72; /* link j3: motion */
     const yaw3pitch_real_t t74 = t16 * t72 - t13 * t71;
-    const yaw3pitch_real_t t75 = t1 * t74 - t0 * t73;
-    const yaw3pitch_real_t t76 = dq[1] + dq[2];
-    const yaw3pitch_real_t t77 = dq[3] + t76;
+    const yaw3pitch_real_t t75 = t1 * t74 - t0 * t73; /* link j4: motion */
+    const yaw3pitch_real_t t76 = dq[1] + dq[2]; /* link j3: motion */
+    const yaw3pitch_real_t t77 = dq[3] + t76; /* link j4: motion */
     const yaw3pitch_real_t t78 = t77 * t75;
-    const yaw3pitch_real_t t79 = parameters[ZZ4] - parameters[YY4];
-    const yaw3pitch_real_t t80 = t1 * t73 + t0 * t74;
+    const yaw3pitch_real_t t79 = parameters[ZZ4] - parameters[YY4]; /* link j4: force and moment */
+    const yaw3pitch_real_t t80 = t1 * t73 + t0 * t74; /* link j4: motion */
     const yaw3pitch_real_t t81 = t77 * t80;
-    const yaw3pitch_real_t t82 = YAW3PITCH_C(2.0) * t81;
-    const yaw3pitch_real_t t83 = t80 * t75;
+    const yaw3pitch_real_t t82 = YAW3PITCH_C(2.0) * t81; /* link j4: force and moment */
+    const yaw3pitch_real_t t83 = t80 * t75; /* link j4: motion */
+    /* link j4: force and moment */
     const yaw3pitch_real_t t84 = parameters[XY4] * t82 - (parameters[XX4] * t78 + t78 * t79)
         - parameters[XZ4] * t83;
-    const yaw3pitch_real_t t85 = t75 * t75;
+    const yaw3pitch_real_t t85 = t75 * t75; /* link j4: motion */
     const yaw3pitch_real_t t86 = t77 * t77;
-    const yaw3pitch_real_t t87 = YAW3PITCH_C(-0.12) * (dq[0] * dq[0]);
+    const yaw3pitch_real_t t87 = YAW3PITCH_C(-0.12) * (dq[0] * dq[0]); /* link j2: motion */
     const yaw3pitch_real_t t88 = t41 * t87 + YAW3PITCH_C(9.81) * t44;
     const yaw3pitch_real_t t89 = t72 * t72;
     const yaw3pitch_real_t t90 = dq[1] * dq[1];
-    const yaw3pitch_real_t t91 = YAW3PITCH_C(0.8) * (t89 + t90) - t88;
+    const yaw3pitch_real_t t91 = YAW3PITCH_C(0.8) * (t89 + t90) - t88; /* link j3: motion */
     const yaw3pitch_real_t t92 = t16 * t91;
-    const yaw3pitch_real_t t93 = t44 * t87 + YAW3PITCH_C(-9.81) * t41;
+    const yaw3pitch_real_t t93 = t44 * t87 + YAW3PITCH_C(-9.81) * t41; /* link j2: motion */
     const yaw3pitch_real_t t94 = t71 * t72;
-    const yaw3pitch_real_t t95 = YAW3PITCH_C(0.8) * t94 - t93;
+    const yaw3pitch_real_t t95 = YAW3PITCH_C(0.8) * t94 - t93; /* link j3: motion */
     const yaw3pitch_real_t t96 = t92 - t13 * t95;
     const yaw3pitch_real_t t97 = t74 * t74;
     const yaw3pitch_real_t t98 = t76 * t76;
-    const yaw3pitch_real_t t99 = t98 + t97;
+    const yaw3pitch_real_t t99 = t98 + t97; /* link j4: motion */
     const yaw3pitch_real_t t100 = t96 + YAW3PITCH_C(0.7) * t99;
-    const yaw3pitch_real_t t101 = t13 * t91;
+    const yaw3pitch_real_t t101 = t13 * t91; /* link j3: motion */
     const yaw3pitch_real_t t102 = t101 + t16 * t95;
     const yaw3pitch_real_t t103 = t73 * t74;
-    const yaw3pitch_real_t t104 = t102 + YAW3PITCH_C(0.7) * t103;
+    const yaw3pitch_real_t t104 = t102 + YAW3PITCH_C(0.7) * t103; /* link j4: motion */
     const yaw3pitch_real_t t105 = t0 * t100 + t1 * t104;
-    const yaw3pitch_real_t t106 = t76 * t73;
-    const yaw3pitch_real_t t107 = dq[1] * t71;
-    const yaw3pitch_real_t t108 = YAW3PITCH_C(-1.6) * t107;
-    const yaw3pitch_real_t t109 = t108 + YAW3PITCH_C(-1.4) * t106;
+    const yaw3pitch_real_t t106 = t76 * t73; /* link j3: motion */
+    const yaw3pitch_real_t t107 = dq[1] * t71; /* link j2: motion */
+    const yaw3pitch_real_t t108 = YAW3PITCH_C(-1.6) * t107; /* link j3: motion */
+    const yaw3pitch_real_t t109 = t108 + YAW3PITCH_C(-1.4) * t106; /* link j4: motion */
+    /* link j4: force and moment */
     const yaw3pitch_real_t t110 = t84 + parameters[YZ4] * (t86 - t85) + (parameters[MY4] * t109
         + parameters[MZ4] * t105);
     const yaw3pitch_real_t t111 = parameters[XX4] - parameters[ZZ4];
     const yaw3pitch_real_t t112 = YAW3PITCH_C(2.0) * t78;
     const yaw3pitch_real_t t113 = t81 * t111 - parameters[YY4] * t81 + parameters[XY4] * t112
         - parameters[YZ4] * t83;
-    const yaw3pitch_real_t t114 = t80 * t80;
+    const yaw3pitch_real_t t114 = t80 * t80; /* link j4: motion */
     const yaw3pitch_real_t t115 = t0 * t104 - t1 * t100;
+    /* link j4: force and moment */
     const yaw3pitch_real_t t116 = t113 + parameters[XZ4] * (t86 - t114) + (parameters[MZ4] * t115
         + parameters[MX4] * t109);
-    const yaw3pitch_real_t t117 = t76 * t74;
-    const yaw3pitch_real_t t118 = parameters[ZZ3] - parameters[YY3];
-    const yaw3pitch_real_t t119 = YAW3PITCH_C(2.0) * t106;
+    const yaw3pitch_real_t t117 = t76 * t74; /* link j3: motion */
+    const yaw3pitch_real_t t118 = parameters[ZZ3] - parameters[YY3]; /* link j3: force and moment */
+    const yaw3pitch_real_t t119 = YAW3PITCH_C(2.0) * t106; /* link j4: motion */
+    /* link j3: force and moment */
     const yaw3pitch_real_t t120 = parameters[XY3] * t119 - (parameters[XX3] * t117 + t117 * t118)
         - parameters[XZ3] * t103;
     const yaw3pitch_real_t t121 = t120 + parameters[YZ3] * (t98 - t97) + (parameters[MY3] * t108
         + parameters[MZ3] * t102);
-    const yaw3pitch_real_t t122 = t121 + (t1 * t110 + t0 * t116);
+    const yaw3pitch_real_t t122 = t121 + (t1 * t110 + t0 * t116); /* link j4: what it passes on */
+    /* link j4: force and moment */
     const yaw3pitch_real_t t123 = parameters[MX4] * t82 + parameters[MY4] * t112 - parameters[MZ4] * (t114
         + t85);
     const yaw3pitch_real_t t124 = t123 - parameters[M4] * t109;
-    const yaw3pitch_real_t t125 = parameters[ZZ3] - parameters[XX3];
-    const yaw3pitch_real_t t126 = YAW3PITCH_C(2.0) * t117;
+    const yaw3pitch_real_t t125 = parameters[ZZ3] - parameters[XX3]; /* link j3: force and moment */
+    const yaw3pitch_real_t t126 = YAW3PITCH_C(2.0) * t117; /* link j4: motion */
+    /* link j3: force and moment */
     const yaw3pitch_real_t t127 = parameters[YY3] * t106 + t106 * t125 - parameters[XY3] * t126
         + parameters[YZ3] * t103;
-    const yaw3pitch_real_t t128 = t73 * t73;
+    const yaw3pitch_real_t t128 = t73 * t73; /* link j3: motion */
+    /* link j3: force and moment */
     const yaw3pitch_real_t t129 = t127 - parameters[XZ3] * (t98 - t128) + (parameters[MZ3] * t96
         - parameters[MX3] * t108);
+    /* link j4: what it passes on */
     const yaw3pitch_real_t t130 = t129 + (t0 * t110 - t1 * t116 + YAW3PITCH_C(0.7) * t124);
-    const yaw3pitch_real_t t131 = dq[1] * t72;
-    const yaw3pitch_real_t t132 = t131 * (parameters[YY2] - parameters[ZZ2]);
-    const yaw3pitch_real_t t133 = YAW3PITCH_C(2.0) * t107;
+    const yaw3pitch_real_t t131 = dq[1] * t72; /* link j2: motion */
+    const yaw3pitch_real_t t132 = t131 * (parameters[YY2] - parameters[ZZ2]); /* link j2: force and moment */
+    const yaw3pitch_real_t t133 = YAW3PITCH_C(2.0) * t107; /* link j2: motion */
+    /* link j2: force and moment */
     const yaw3pitch_real_t t134 = t132 - t131 * parameters[XX2] + t133 * parameters[XY2]
         - t94 * parameters[XZ2];
     const yaw3pitch_real_t t135 = (t89 - t90) * parameters[YZ2];
     const yaw3pitch_real_t t136 = t93 * parameters[MZ2];
+    /* link j3: what it passes on */
     const yaw3pitch_real_t t137 = t134 - t135 - t136 + (t16 * t122 - t13 * t130);
+    /* link j3: force and moment */
     const yaw3pitch_real_t t138 = parameters[MX3] * t119 + parameters[MY3] * t126 - parameters[MZ3] * (t128
         + t97);
-    const yaw3pitch_real_t t139 = t138 - parameters[M3] * t108 + t124;
-    const yaw3pitch_real_t t140 = t107 * (parameters[ZZ2] - parameters[XX2]);
-    const yaw3pitch_real_t t141 = YAW3PITCH_C(2.0) * t131;
+    const yaw3pitch_real_t t139 = t138 - parameters[M3] * t108 + t124; /* link j4: what it passes on */
+    const yaw3pitch_real_t t140 = t107 * (parameters[ZZ2] - parameters[XX2]); /* link j2: force and moment */
+    const yaw3pitch_real_t t141 = YAW3PITCH_C(2.0) * t131; /* link j2: motion */
+    /* link j2: force and moment */
     const yaw3pitch_real_t t142 = t107 * parameters[YY2] + t140 - t141 * parameters[XY2]
         + t94 * parameters[YZ2];
-    const yaw3pitch_real_t t143 = t71 * t71;
-    const yaw3pitch_real_t t144 = (t143 - t90) * parameters[XZ2];
+    const yaw3pitch_real_t t143 = t71 * t71; /* link j2: motion */
+    const yaw3pitch_real_t t144 = (t143 - t90) * parameters[XZ2]; /* link j2: force and moment */
     const yaw3pitch_real_t t145 = t88 * parameters[MZ2];
+    /* link j3: what it passes on */
     const yaw3pitch_real_t t146 = t142 + t144 - t145 + (t13 * t122 + t16 * t130 + YAW3PITCH_C(0.8) * t139);
-    const yaw3pitch_real_t t147 = t143 + t89;
+    const yaw3pitch_real_t t147 = t143 + t89; /* link j3: motion */
+    /* link j3: what it passes on */
     const yaw3pitch_real_t t148 = t133 * parameters[MX2] + t141 * parameters[MY2] - t147 * parameters[MZ2]
         + t139;
     const yaw3pitch_real_t t149 = input[0] + (t44 * t137 + t41 * t146 + YAW3PITCH_C(0.12) * t148);
+    /* link j4: force and moment */
     const yaw3pitch_real_t t150 = t31 * t83 + parameters[XY4] * (t114 - t85) + (parameters[MX4] * t105
         - parameters[MY4] * t115);
     const yaw3pitch_real_t t151 = input[3] - t150;
@@ -324,16 +351,20 @@ int yaw3pitch_forward_dynamics_derivatives_standard(
         - parameters[M4] * t115;
     const yaw3pitch_real_t t153 = parameters[M4] * t105 - (parameters[MY4] * (t86 + t114)
         - parameters[MX4] * t83);
-    const yaw3pitch_real_t t154 = t0 * t152 - t1 * t153;
+    const yaw3pitch_real_t t154 = t0 * t152 - t1 * t153; /* link j4: what it passes on */
+    /* link j3: force and moment */
     const yaw3pitch_real_t t155 = parameters[XY3] * (t128 - t97) - t103 * (parameters[XX3] - parameters[YY3])
         + (parameters[MX3] * t102 + parameters[MY3] * t96);
-    const yaw3pitch_real_t t156 = t155 + (t150 - YAW3PITCH_C(0.7) * t154);
+    const yaw3pitch_real_t t156 = t155 + (t150 - YAW3PITCH_C(0.7) * t154); /* link j4: what it passes on */
     const yaw3pitch_real_t t157 = input[2] - t156 + t151 * t5;
     const yaw3pitch_real_t t158 = parameters[M3] * t96 + (parameters[MX3] * t99 - parameters[MY3] * t103)
         + (t1 * t152 + t0 * t153);
+    /* link j3: force and moment */
     const yaw3pitch_real_t t159 = parameters[M3] * t102 - (parameters[MY3] * (t98 + t128)
         - parameters[MX3] * t103);
+    /* link j3: what it passes on */
     const yaw3pitch_real_t t160 = t156 - YAW3PITCH_C(0.8) * (t13 * t158 - t16 * (t159 - t154));
+    /* link j2: force and moment */
     const yaw3pitch_real_t t161 = t94 * (parameters[XX2] - parameters[YY2]) - (t143 - t89) * parameters[XY2]
         + (t93 * parameters[MX2] + t88 * parameters[MY2]);
     const yaw3pitch_real_t t162 = input[1] + (t161 - t160) + t151 * t24 - t157 * t23;
@@ -347,9 +378,9 @@ int yaw3pitch_forward_dynamics_derivatives_standard(
     ddq[2] = -t167;
     const yaw3pitch_real_t t168 = yaw3pitch_bounded(t151 * t4 + t56 * t165 + t24 * t166 - t5 * t167);
     ddq[3] = t168;
-    const yaw3pitch_real_t t169 = t44 * t16 + t41 * t13;
+    const yaw3pitch_real_t t169 = t44 * t16 + t41 * t13; /* link j3: motion */
     const yaw3pitch_real_t t170 = t44 * t13 - t41 * t16;
-    const yaw3pitch_real_t t171 = t0 * t169 + t1 * t170;
+    const yaw3pitch_real_t t171 = t0 * t169 + t1 * t170; /* link j4: motion */
     const yaw3pitch_real_t t172 = dq[0] * t171;
     const yaw3pitch_real_t t173 = t172 * parameters[XZ4];
     const yaw3pitch_real_t t174 = t77 * parameters[XY4];
@@ -363,23 +394,25 @@ int yaw3pitch_forward_dynamics_derivatives_standard(
     const yaw3pitch_real_t t182 = t77 * t181 + t177 * parameters[XZ4];
     const yaw3pitch_real_t t183 = parameters[YY4] - t180;
     const yaw3pitch_real_t t184 = t172 * parameters[YZ4] + t77 * t183;
+    /* link j4: inertia, momentum beyond */
     const yaw3pitch_real_t t185 = t1 * (t175 + t179) + t0 * (t182 - t184);
     const yaw3pitch_real_t t186 = t1 * t185;
     const yaw3pitch_real_t t187 = t172 * parameters[MZ4] + t77 * parameters[MY4];
     const yaw3pitch_real_t t188 = t77 * parameters[MX4] + t177 * parameters[MZ4];
     const yaw3pitch_real_t t189 = t1 * t187 + t0 * t188;
     const yaw3pitch_real_t t190 = YAW3PITCH_C(0.7) * t189;
-    const yaw3pitch_real_t t191 = YAW3PITCH_C(0.7) * t76;
-    const yaw3pitch_real_t t192 = t11 * t191;
-    const yaw3pitch_real_t t193 = dq[0] * t170;
+    const yaw3pitch_real_t t191 = YAW3PITCH_C(0.7) * t76; /* link j4: velocity of its origin */
+    const yaw3pitch_real_t t192 = t11 * t191; /* link j4: inertia, momentum beyond */
+    const yaw3pitch_real_t t193 = dq[0] * t170; /* link j3: motion */
     const yaw3pitch_real_t t194 = YAW3PITCH_C(0.7) * t193;
-    const yaw3pitch_real_t t195 = parameters[MZ4] * t194;
+    const yaw3pitch_real_t t195 = parameters[MZ4] * t194; /* link j4: inertia, momentum beyond */
     const yaw3pitch_real_t t196 = t192 + t195 - t190;
     const yaw3pitch_real_t t197 = t193 * parameters[XZ3];
     const yaw3pitch_real_t t198 = t76 * parameters[XY3];
     const yaw3pitch_real_t t199 = t196 + (t179 - t186 + t190) - (t197 + t198);
-    const yaw3pitch_real_t t200 = dq[0] * t169;
+    const yaw3pitch_real_t t200 = dq[0] * t169; /* link j3: motion */
     const yaw3pitch_real_t t201 = t200 * parameters[YZ3];
+    /* link j4: inertia, momentum beyond */
     const yaw3pitch_real_t t202 = t198 - t201 - (t175 - t186 + t192 - t196);
     const yaw3pitch_real_t t203 = t0 * t185;
     const yaw3pitch_real_t t204 = YAW3PITCH_C(0.5) * (parameters[ZZ3] + (parameters[XX3] + parameters[YY3]));
@@ -389,17 +422,19 @@ int yaw3pitch_forward_dynamics_derivatives_standard(
     const yaw3pitch_real_t t208 = parameters[XX3] - t204;
     const yaw3pitch_real_t t209 = t76 * t208 - t200 * parameters[XZ3] + (t182 - t203
         + (YAW3PITCH_C(0.7) * t207 + t14 * t191));
+    /* link j3: inertia, momentum beyond */
     const yaw3pitch_real_t t210 = t16 * (t199 - t202) + t13 * (t206 - t209);
     const yaw3pitch_real_t t211 = t16 * t210;
+    /* link j4: inertia, momentum beyond */
     const yaw3pitch_real_t t212 = t193 * parameters[MZ3] + t76 * parameters[MY3] + t189;
     const yaw3pitch_real_t t213 = t200 * parameters[MZ3] - t76 * parameters[MX3] + (t207
         - parameters[M4] * t191);
-    const yaw3pitch_real_t t214 = t16 * t212 - t13 * t213;
+    const yaw3pitch_real_t t214 = t16 * t212 - t13 * t213; /* link j3: inertia, momentum beyond */
     const yaw3pitch_real_t t215 = YAW3PITCH_C(0.8) * t214;
-    const yaw3pitch_real_t t216 = YAW3PITCH_C(-0.8) * dq[1];
-    const yaw3pitch_real_t t217 = t42 * t216;
-    const yaw3pitch_real_t t218 = YAW3PITCH_C(-0.8) * t72;
-    const yaw3pitch_real_t t219 = t63 * t218;
+    const yaw3pitch_real_t t216 = YAW3PITCH_C(-0.8) * dq[1]; /* link j3: velocity of its origin */
+    const yaw3pitch_real_t t217 = t42 * t216; /* link j3: inertia, momentum beyond */
+    const yaw3pitch_real_t t218 = YAW3PITCH_C(-0.8) * t72; /* link j3: velocity of its origin */
+    const yaw3pitch_real_t t219 = t63 * t218; /* link j3: inertia, momentum beyond */
     const yaw3pitch_real_t t220 = t217 + t219 - t215;
     const yaw3pitch_real_t t221 = t72 * parameters[XZ2];
     const yaw3pitch_real_t t222 = dq[1] * parameters[XY2];
@@ -414,45 +449,52 @@ int yaw3pitch_forward_dynamics_derivatives_standard(
     const yaw3pitch_real_t t231 = parameters[XX2] - t227;
     const yaw3pitch_real_t t232 = dq[1] * t231 - t71 * parameters[XZ2] + (t209 + t226
         + (YAW3PITCH_C(0.8) * t230 + t47 * t216));
+    /* link j2: inertia, momentum beyond */
     const yaw3pitch_real_t t233 = t41 * (t41 * (t225 - t223) + t44 * (t229 + t232));
+    /* link j3: inertia, momentum beyond */
     const yaw3pitch_real_t t234 = t72 * parameters[MZ2] - dq[1] * parameters[MY2] - t214;
     const yaw3pitch_real_t t235 = t71 * parameters[MZ2] - dq[1] * parameters[MX2] + (t230 + t25 * t216);
-    const yaw3pitch_real_t t236 = parameters[MZ2] + t63;
+    const yaw3pitch_real_t t236 = parameters[MZ2] + t63; /* link j3: inertia of it and all beyond */
+    /* link j2: inertia, momentum beyond */
     const yaw3pitch_real_t t237 = YAW3PITCH_C(0.12) * (t41 * t234 + t44 * t235)
         + t236 * (YAW3PITCH_C(-0.12) * dq[0]);
-    const yaw3pitch_real_t t238 = YAW3PITCH_C(2.0) * (t223 + t233 + t237);
+    const yaw3pitch_real_t t238 = YAW3PITCH_C(2.0) * (t223 + t233 + t237); /* link j1: derivatives */
     const yaw3pitch_real_t t239 = t68 * t164;
     const yaw3pitch_real_t t240 = t177 * parameters[XY4] - t172 * t181;
     const yaw3pitch_real_t t241 = t177 * t183 - t172 * parameters[XY4];
     const yaw3pitch_real_t t242 = t177 * parameters[MY4] - t172 * parameters[MX4];
+    /* link j4: inertia, momentum beyond */
     const yaw3pitch_real_t t243 = t0 * t241 - t1 * t240 - (YAW3PITCH_C(-0.7) * t242 - t14 * t194);
     const yaw3pitch_real_t t244 = t200 * parameters[XY3] + t193 * t208 + t243;
     const yaw3pitch_real_t t245 = t0 * t240 + t1 * t241 + t11 * t194 - (t200 * t205 + t193 * parameters[XY3]);
     const yaw3pitch_real_t t246 = t242 - parameters[M4] * t194 - (t200 * parameters[MY3]
         + t193 * parameters[MX3]);
+    /* link j3: inertia, momentum beyond */
     const yaw3pitch_real_t t247 = t16 * t244 + t13 * t245 + (YAW3PITCH_C(0.8) * t246 - t47 * t218);
+    /* link j2: derivatives */
     const yaw3pitch_real_t t248 = YAW3PITCH_C(2.0) * (t71 * parameters[XY2] - t72 * t231 + t247);
+    /* link j3: inertia, momentum beyond */
     const yaw3pitch_real_t t249 = t72 * parameters[XY2] + t71 * t228 - (t13 * t244 - t16 * t245 + t42 * t218);
-    const yaw3pitch_real_t t250 = YAW3PITCH_C(2.0) * t249;
+    const yaw3pitch_real_t t250 = YAW3PITCH_C(2.0) * t249; /* link j2: derivatives */
     const yaw3pitch_real_t t251 = YAW3PITCH_C(0.24) * dq[0];
     const yaw3pitch_real_t t252 = t44 * t248 - t41 * t250 + (t44 * t48 - t41 * t46) * t251;
     const yaw3pitch_real_t t253 = t164 * (t62 - t23 * t68);
-    const yaw3pitch_real_t t254 = YAW3PITCH_C(2.0) * t244;
+    const yaw3pitch_real_t t254 = YAW3PITCH_C(2.0) * t244; /* link j3: derivatives */
     const yaw3pitch_real_t t255 = YAW3PITCH_C(2.0) * t245;
-    const yaw3pitch_real_t t256 = YAW3PITCH_C(-1.6) * t72;
-    const yaw3pitch_real_t t257 = t16 * t254 + t13 * t255 + t17 * t256;
+    const yaw3pitch_real_t t256 = YAW3PITCH_C(-1.6) * t72; /* link j4: derivatives */
+    const yaw3pitch_real_t t257 = t16 * t254 + t13 * t255 + t17 * t256; /* link j3: derivatives */
     const yaw3pitch_real_t t258 = t13 * t254 - t16 * t255 + t42 * t256;
     const yaw3pitch_real_t t259 = t44 * t257 + t41 * t258 - (t41 * t42 + t44 * t17) * t251;
     const yaw3pitch_real_t t260 = t24 - t5 * t23;
     const yaw3pitch_real_t t261 = yaw3pitch_bounded(t164 * (t56 - t5 * t62 - t68 * t260));
-    const yaw3pitch_real_t t262 = YAW3PITCH_C(2.0) * t240;
+    const yaw3pitch_real_t t262 = YAW3PITCH_C(2.0) * t240; /* link j4: derivatives */
     const yaw3pitch_real_t t263 = YAW3PITCH_C(2.0) * t241;
     const yaw3pitch_real_t t264 = YAW3PITCH_C(1.4) * t193;
     const yaw3pitch_real_t t265 = t0 * t263 - t1 * t262 + t2 * t264;
     const yaw3pitch_real_t t266 = t0 * t262 + t1 * t263 + t11 * t264;
     const yaw3pitch_real_t t267 = t16 * t265 + t13 * t266 + t19 * t256;
-    const yaw3pitch_real_t t268 = t16 * t11 - t13 * t2;
-    const yaw3pitch_real_t t269 = t13 * t265 - t16 * t266 - t268 * t256;
+    const yaw3pitch_real_t t268 = t16 * t11 - t13 * t2; /* link j4: column of the mass matrix */
+    const yaw3pitch_real_t t269 = t13 * t265 - t16 * t266 - t268 * t256; /* link j4: derivatives */
     const yaw3pitch_real_t t270 = t44 * t267 + t41 * t269 + (t41 * t268 - t44 * t19) * t251;
     const yaw3pitch_real_t t271 = t252 * t239 - t164 * t238 + t259 * t253 - t270 * t261;
     ddq_by_dq[0] = t271;
@@ -474,7 +516,7 @@ int yaw3pitch_forward_dynamics_derivatives_standard(
     ddq_by_input[12] = t261;
     const yaw3pitch_real_t t281 = t166 - t167;
     const yaw3pitch_real_t t282 = t168 + t281;
-    const yaw3pitch_real_t t283 = t177 * t172;
+    const yaw3pitch_real_t t283 = t177 * t172; /* link j4: motion */
     const yaw3pitch_real_t t284 = t283 + t282;
     const yaw3pitch_real_t t285 = t176 * t165;
     const yaw3pitch_real_t t286 = t172 * t77;
@@ -492,7 +534,7 @@ int yaw3pitch_forward_dynamics_derivatives_standard(
     const yaw3pitch_real_t t297 = t107 + t296;
     const yaw3pitch_real_t t298 = t294 + YAW3PITCH_C(0.8) * t297;
     const yaw3pitch_real_t t299 = t170 * t165;
-    const yaw3pitch_real_t t300 = t200 * t76;
+    const yaw3pitch_real_t t300 = t200 * t76; /* link j3: motion */
     const yaw3pitch_real_t t301 = t300 + t299;
     const yaw3pitch_real_t t302 = t300 + t301;
     const yaw3pitch_real_t t303 = t298 + YAW3PITCH_C(0.7) * t302;
@@ -504,7 +546,7 @@ int yaw3pitch_forward_dynamics_derivatives_standard(
     const yaw3pitch_real_t t309 = t308 + YAW3PITCH_C(0.7) * t305;
     const yaw3pitch_real_t t310 = t92 + t13 * t307;
     const yaw3pitch_real_t t311 = t193 * t193;
-    const yaw3pitch_real_t t312 = t311 + t98;
+    const yaw3pitch_real_t t312 = t311 + t98; /* link j4: motion */
     const yaw3pitch_real_t t313 = YAW3PITCH_C(0.7) * t312 + t310;
     const yaw3pitch_real_t t314 = t1 * t309 - t0 * t313;
     const yaw3pitch_real_t t315 = parameters[MZ4] * t314;
@@ -518,25 +560,25 @@ int yaw3pitch_forward_dynamics_derivatives_standard(
     const yaw3pitch_real_t t322 = parameters[MZ4] * t321;
     const yaw3pitch_real_t t323 = (t320 - t86) * parameters[XZ4] + t319 + (t322 + parameters[MX4] * t303);
     const yaw3pitch_real_t t324 = t169 * t165;
-    const yaw3pitch_real_t t325 = t193 * t76;
+    const yaw3pitch_real_t t325 = t193 * t76; /* link j3: motion */
     const yaw3pitch_real_t t326 = t325 - t324;
     const yaw3pitch_real_t t327 = t325 * t118 + parameters[XX3] * t326 + parameters[XY3] * t302
         + parameters[XZ3] * t305;
     const yaw3pitch_real_t t328 = parameters[MY3] * t298 + parameters[MZ3] * t308 + ((t311
         - t98) * parameters[YZ3] - t327);
     const yaw3pitch_real_t t329 = t328 + (t0 * t323 - t1 * t316);
-    const yaw3pitch_real_t t330 = t320 + t293;
+    const yaw3pitch_real_t t330 = t320 + t293; /* link j4: columns */
     const yaw3pitch_real_t t331 = parameters[M4] * t303 + (parameters[MX4] * t291 - parameters[MY4] * t318
         - t330 * parameters[MZ4]);
     const yaw3pitch_real_t t332 = t325 + t326;
     const yaw3pitch_real_t t333 = t304 + t281;
     const yaw3pitch_real_t t334 = t300 * t125 + parameters[YY3] * t301 + parameters[XY3] * t332
         - parameters[YZ3] * t333;
-    const yaw3pitch_real_t t335 = t200 * t200;
+    const yaw3pitch_real_t t335 = t200 * t200; /* link j3: motion */
     const yaw3pitch_real_t t336 = parameters[MZ3] * t310 + parameters[MX3] * t298 + ((t335
         - t98) * parameters[XZ3] + t334);
     const yaw3pitch_real_t t337 = t336 + (t0 * t316 + t1 * t323 + YAW3PITCH_C(0.7) * t331);
-    const yaw3pitch_real_t t338 = t335 + t311;
+    const yaw3pitch_real_t t338 = t335 + t311; /* link j4: motion */
     const yaw3pitch_real_t t339 = parameters[M3] * t298 + (parameters[MX3] * t302 - parameters[MY3] * t332
         - t338 * parameters[MZ3]);
     const yaw3pitch_real_t t340 = t16 * t337 - t13 * t329 + YAW3PITCH_C(0.8) * (t339 + t331);
@@ -573,24 +615,31 @@ int yaw3pitch_forward_dynamics_derivatives_standard(
     const yaw3pitch_real_t t365 = t77 * parameters[YZ4] + t172 * t364;
     const yaw3pitch_real_t t366 = t77 * parameters[XZ4] + t177 * t364;
     const yaw3pitch_real_t t367 = t204 - parameters[ZZ3];
+    /* link j4: inertia, momentum beyond */
     const yaw3pitch_real_t t368 = t193 * t367 - t76 * parameters[YZ3] - (t1 * t365 + t0 * t366);
     const yaw3pitch_real_t t369 = t76 * parameters[XZ3] + t200 * t367 - (t0 * t365 - t1 * t366
         + parameters[MZ4] * t191);
     const yaw3pitch_real_t t370 = parameters[ZZ2] - t227;
+    /* link j3: inertia, momentum beyond */
     const yaw3pitch_real_t t371 = t72 * t370 - dq[1] * parameters[YZ2] + (t16 * t368 - t13 * t369);
+    /* link j2: derivatives */
     const yaw3pitch_real_t t372 = t44 * (YAW3PITCH_C(2.0) * t371 + (t39 * t344 + t43 * t345));
+    /* link j3: inertia, momentum beyond */
     const yaw3pitch_real_t t373 = dq[1] * parameters[XZ2] - t71 * t370 + (t13 * t368 + t16 * t369
         + t63 * t216);
+    /* link j2: derivatives */
     const yaw3pitch_real_t t374 = t41 * (YAW3PITCH_C(2.0) * t373 + (t43 * t344 + t40 * t345));
     const yaw3pitch_real_t t375 = t372 + t374 + YAW3PITCH_C(0.12) * (t46 * t344 + t48 * t345);
     const yaw3pitch_real_t t376 = t173 - t178;
+    /* link j4: inertia, momentum beyond */
     const yaw3pitch_real_t t377 = t197 + t201 + (t196 + (t376 - t195));
+    /* link j2: derivatives */
     const yaw3pitch_real_t t378 = YAW3PITCH_C(2.0) * (t224 - t221 + (t220 + (t377 - t219)))
         + YAW3PITCH_C(2.0) * (t72 * t64 + t71 * t65);
-    const yaw3pitch_real_t t379 = YAW3PITCH_C(2.0) * t377;
+    const yaw3pitch_real_t t379 = YAW3PITCH_C(2.0) * t377; /* link j3: derivatives */
     const yaw3pitch_real_t t380 = YAW3PITCH_C(1.6) * dq[1];
     const yaw3pitch_real_t t381 = t379 - t42 * t380 + YAW3PITCH_C(2.0) * (t71 * t60 - t72 * t59);
-    const yaw3pitch_real_t t382 = YAW3PITCH_C(2.0) * t376;
+    const yaw3pitch_real_t t382 = YAW3PITCH_C(2.0) * t376; /* link j4: derivatives */
     const yaw3pitch_real_t t383 = t382 + t11 * (YAW3PITCH_C(1.4) * t76);
     const yaw3pitch_real_t t384 = t383 + t268 * t380 + YAW3PITCH_C(2.0) * (t71 * t54 - t72 * t53);
     const yaw3pitch_real_t t385 = t378 * t239 - t164 * t375 + t381 * t253 - t384 * t261;
@@ -643,6 +692,7 @@ int yaw3pitch_forward_dynamics_derivatives_standard(
     ddq_by_q[10] = t418;
     const yaw3pitch_real_t t419 = t277 * t413 - (t261 * t397 + t274 * t412) - t279 * t415;
     ddq_by_q[14] = t419;
+    /* link j3: derivatives */
     const yaw3pitch_real_t t420 = YAW3PITCH_C(2.0) * t368 - (t35 * t389 + t36 * t390);
     const yaw3pitch_real_t t421 = YAW3PITCH_C(2.0) * t369 + (t36 * t389 + t34 * t390);
     const yaw3pitch_real_t t422 = t12 * t389 - t15 * t390;
@@ -652,6 +702,7 @@ int yaw3pitch_forward_dynamics_derivatives_standard(
         + t16 * (YAW3PITCH_C(-2.0) * t212 + t63 * t389);
     const yaw3pitch_real_t t426 = t379 + (t57 * t389 + t58 * t390) + YAW3PITCH_C(0.8) * t425;
     const yaw3pitch_real_t t427 = t379 + YAW3PITCH_C(2.0) * (t193 * t57 - t200 * t58);
+    /* link j4: derivatives */
     const yaw3pitch_real_t t428 = t383 + YAW3PITCH_C(2.0) * (t193 * t51 - t200 * t52);
     const yaw3pitch_real_t t429 = t426 * t239 - t164 * t424 + t427 * t253 - t428 * t261;
     ddq_by_dq[2] = t429;

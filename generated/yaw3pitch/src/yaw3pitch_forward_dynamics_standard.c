@@ -67,11 +67,11 @@
  */
 #include "yaw3pitch_private.h"
 
-#if YAW3PITCH_GENERATION != 0x7BB9A1E4UL
+#if YAW3PITCH_GENERATION != 0x14CEE2C4UL
 #error "yaw3pitch.h and yaw3pitch_forward_dynamics_standard.c are of different generations: generate the arm again"
 #endif
 
-int yaw3pitch_forward_dynamics_standard(
+yaw3pitch_status_t yaw3pitch_forward_dynamics_standard(
     const yaw3pitch_real_t q[YAW3PITCH_N_JOINTS],
     const yaw3pitch_real_t dq[YAW3PITCH_N_JOINTS],
     const yaw3pitch_real_t input[YAW3PITCH_N_JOINTS],
@@ -81,7 +81,7 @@ int yaw3pitch_forward_dynamics_standard(
     enum { XX1 = 0, XY1, XZ1, YY1, YZ1, ZZ1, MX1, MY1, MZ1, M1, XX2, XY2, XZ2, YY2, YZ2, ZZ2, MX2, MY2, MZ2,
         M2, XX3, XY3, XZ3, YY3, YZ3, ZZ3, MX3, MY3, MZ3, M3, XX4, XY4, XZ4, YY4, YZ4, ZZ4, MX4, MY4, MZ4, M4
         };
-    int status = YAW3PITCH_STATUS_OK;
+    yaw3pitch_status_t status = YAW3PITCH_STATUS_OK;
 
     if (!yaw3pitch_within_joints(q, YAW3PITCH_C(1.0e8))
         || !yaw3pitch_within_joints(dq, YAW3PITCH_C(1.0e10))
@@ -104,11 +104,12 @@ int yaw3pitch_forward_dynamics_standard(
         yaw3pitch_zero(out, 4);
         return YAW3PITCH_STATUS_PIVOT;
     }
+    /* link j4: column of the mass matrix */
     const yaw3pitch_real_t t2 = t0 * parameters[MY4] - t1 * parameters[MX4];
     const yaw3pitch_real_t t3 = YAW3PITCH_C(0.7) * t2 - parameters[ZZ4];
     const yaw3pitch_real_t t4 = YAW3PITCH_C(-1.0) / parameters[ZZ4];
     const yaw3pitch_real_t t5 = t3 * t4;
-    const yaw3pitch_real_t t6 = YAW3PITCH_C(0.7) * parameters[M4];
+    const yaw3pitch_real_t t6 = YAW3PITCH_C(0.7) * parameters[M4]; /* link j4: inertia of it and all beyond */
     const yaw3pitch_real_t t7 = YAW3PITCH_C(0.7) * (t6 + YAW3PITCH_C(-2.0) * t2);
     const yaw3pitch_real_t t8 = parameters[ZZ3] + (parameters[ZZ4] + t7);
     const yaw3pitch_real_t t9 = yaw3pitch_bounded(t8 + t3 * t5);
@@ -121,17 +122,19 @@ int yaw3pitch_forward_dynamics_standard(
         yaw3pitch_zero(out, 4);
         return YAW3PITCH_STATUS_PIVOT;
     }
+    /* link j4: column of the mass matrix */
     const yaw3pitch_real_t t11 = t1 * parameters[MY4] + t0 * parameters[MX4];
-    const yaw3pitch_real_t t12 = parameters[MY3] + t11;
+    const yaw3pitch_real_t t12 = parameters[MY3] + t11; /* link j4: inertia of it and all beyond */
     const yaw3pitch_real_t t14 = parameters[MX3] - (t2 - t6);
-    const yaw3pitch_real_t t16 = t15 * t14 - t13 * t12;
+    const yaw3pitch_real_t t16 = t15 * t14 - t13 * t12; /* link j3: column of the mass matrix */
+    /* link j4: column of the mass matrix */
     const yaw3pitch_real_t t17 = t3 + YAW3PITCH_C(0.8) * (t13 * t11 + t15 * t2);
     const yaw3pitch_real_t t18 = YAW3PITCH_C(-0.8) * t16 - t8 - t17 * t5;
     const yaw3pitch_real_t t19 = YAW3PITCH_C(1.0) / t9;
     const yaw3pitch_real_t t20 = t18 * t19;
     const yaw3pitch_real_t t21 = t17 * t4;
-    const yaw3pitch_real_t t22 = parameters[M3] + parameters[M4];
-    const yaw3pitch_real_t t23 = YAW3PITCH_C(0.8) * t22;
+    const yaw3pitch_real_t t22 = parameters[M3] + parameters[M4]; /* link j4: inertia of it and all beyond */
+    const yaw3pitch_real_t t23 = YAW3PITCH_C(0.8) * t22; /* link j3: inertia of it and all beyond */
     const yaw3pitch_real_t t24 = YAW3PITCH_C(0.8) * (t23 + YAW3PITCH_C(2.0) * t16);
     const yaw3pitch_real_t t25 = parameters[ZZ2] + (t8 + t24);
     const yaw3pitch_real_t t26 = yaw3pitch_bounded(t25 + t17 * t21 - t18 * t20);
@@ -144,33 +147,41 @@ int yaw3pitch_forward_dynamics_standard(
         yaw3pitch_zero(out, 4);
         return YAW3PITCH_STATUS_PIVOT;
     }
+    /* link j4: inertia of it and all beyond */
     const yaw3pitch_real_t t28 = parameters[XX4] - parameters[YY4];
     const yaw3pitch_real_t t29 = t1 * t28 + parameters[XY4] * (YAW3PITCH_C(-2.0) * t0);
     const yaw3pitch_real_t t30 = t1 * t29;
     const yaw3pitch_real_t t31 = parameters[YY3] + (parameters[XX4] - t30 + t7);
     const yaw3pitch_real_t t32 = parameters[XX3] + (parameters[YY4] + t30);
     const yaw3pitch_real_t t33 = parameters[XY3] + (parameters[XY4] + t0 * t29 + YAW3PITCH_C(-0.7) * t11);
+    /* link j3: inertia of it and all beyond */
     const yaw3pitch_real_t t34 = t15 * (t32 - t31) - t33 * (YAW3PITCH_C(2.0) * t13);
     const yaw3pitch_real_t t35 = t15 * t34;
     const yaw3pitch_real_t t36 = parameters[XX2] + (t31 + t35);
-    const yaw3pitch_real_t t38 = t15 * t12 + t13 * t14;
+    const yaw3pitch_real_t t38 = t15 * t12 + t13 * t14; /* link j3: column of the mass matrix */
+    /* link j2: inertia of it and all beyond */
     const yaw3pitch_real_t t40 = (parameters[XY2] + (t33 + t13 * t34
         + YAW3PITCH_C(-0.8) * t38)) * (YAW3PITCH_C(2.0) * t39);
     const yaw3pitch_real_t t41 = t37 * (parameters[YY2] + (t32 - t35 + t24) - t36) + t40;
+    /* link j2: column of the mass matrix */
     const yaw3pitch_real_t t42 = t37 * (parameters[MX2] + (t16 + t23)) - t39 * (parameters[MY2] + t38);
+    /* link j2: inertia of it and all beyond */
     const yaw3pitch_real_t t43 = t36 + t37 * t41 + YAW3PITCH_C(0.12) * (YAW3PITCH_C(0.12) * (parameters[M2]
         + t22) + YAW3PITCH_C(2.0) * t42);
     const yaw3pitch_real_t t44 = parameters[ZZ1] + t43;
+    /* link j4: column of the mass matrix */
     const yaw3pitch_real_t t45 = t0 * parameters[YZ4] - t1 * parameters[XZ4];
     const yaw3pitch_real_t t46 = t0 * parameters[XZ4] + t1 * parameters[YZ4];
     const yaw3pitch_real_t t47 = t37 * (t15 * t46 - t13 * t45) - t39 * (t15 * t45 + t13 * t46);
     const yaw3pitch_real_t t48 = t47 * t4;
+    /* link j4: inertia of it and all beyond */
     const yaw3pitch_real_t t49 = t45 + YAW3PITCH_C(0.7) * parameters[MZ4] - parameters[XZ3];
     const yaw3pitch_real_t t50 = parameters[YZ3] + t46;
-    const yaw3pitch_real_t t51 = t15 * t49 + t13 * t50;
+    const yaw3pitch_real_t t51 = t15 * t49 + t13 * t50; /* link j3: column of the mass matrix */
     const yaw3pitch_real_t t52 = t13 * t49 - t15 * t50;
     const yaw3pitch_real_t t53 = t39 * t51 + t37 * t52 + t47 * t5;
     const yaw3pitch_real_t t54 = t53 * t19;
+    /* link j2: column of the mass matrix */
     const yaw3pitch_real_t t55 = t39 * (t51 + YAW3PITCH_C(0.8) * (parameters[MZ3] + parameters[MZ4])
         - parameters[XZ2]) + t37 * (t52 - parameters[YZ2]);
     const yaw3pitch_real_t t56 = t55 + t47 * t21 + t53 * t20;
@@ -186,88 +197,103 @@ int yaw3pitch_forward_dynamics_standard(
         yaw3pitch_zero(out, 4);
         return YAW3PITCH_STATUS_PIVOT;
     }
-    const yaw3pitch_real_t t61 = t39 * dq[0];
+    const yaw3pitch_real_t t61 = t39 * dq[0]; /* link j2: motion */
     const yaw3pitch_real_t t62 = t37 * dq[0];
-    const yaw3pitch_real_t t63 = t15 * t61 + t13 * t62;
+    const yaw3pitch_real_t t63 = t15 * t61 + t13 * t62; /* link j3: motion */
     const yaw3pitch_real_t t64 = t15 * t62 - t13 * t61;
-    const yaw3pitch_real_t t65 = t1 * t64 - t0 * t63;
-    const yaw3pitch_real_t t66 = dq[1] + dq[2];
-    const yaw3pitch_real_t t67 = dq[3] + t66;
+    const yaw3pitch_real_t t65 = t1 * t64 - t0 * t63; /* link j4: motion */
+    const yaw3pitch_real_t t66 = dq[1] + dq[2]; /* link j3: motion */
+    const yaw3pitch_real_t t67 = dq[3] + t66; /* link j4: motion */
     const yaw3pitch_real_t t68 = t67 * t65;
     const yaw3pitch_real_t t69 = t1 * t63 + t0 * t64;
     const yaw3pitch_real_t t70 = t67 * t69;
-    const yaw3pitch_real_t t71 = YAW3PITCH_C(2.0) * t70;
+    const yaw3pitch_real_t t71 = YAW3PITCH_C(2.0) * t70; /* link j4: force and moment */
     const yaw3pitch_real_t t72 = parameters[XY4] * t71 - (parameters[XX4] * t68 + t68 * (parameters[ZZ4]
         - parameters[YY4]));
-    const yaw3pitch_real_t t73 = t69 * t65;
+    const yaw3pitch_real_t t73 = t69 * t65; /* link j4: motion */
     const yaw3pitch_real_t t74 = t65 * t65;
     const yaw3pitch_real_t t75 = t67 * t67;
-    const yaw3pitch_real_t t76 = YAW3PITCH_C(0.12) * (dq[0] * dq[0]);
+    const yaw3pitch_real_t t76 = YAW3PITCH_C(0.12) * (dq[0] * dq[0]); /* link j2: motion */
     const yaw3pitch_real_t t77 = t37 * t76 + YAW3PITCH_C(-9.81) * t39;
     const yaw3pitch_real_t t78 = t62 * t62;
     const yaw3pitch_real_t t79 = dq[1] * dq[1];
-    const yaw3pitch_real_t t80 = t77 + YAW3PITCH_C(0.8) * (t78 + t79);
-    const yaw3pitch_real_t t81 = t39 * t76 + YAW3PITCH_C(9.81) * t37;
+    const yaw3pitch_real_t t80 = t77 + YAW3PITCH_C(0.8) * (t78 + t79); /* link j3: motion */
+    const yaw3pitch_real_t t81 = t39 * t76 + YAW3PITCH_C(9.81) * t37; /* link j2: motion */
     const yaw3pitch_real_t t82 = t61 * t62;
-    const yaw3pitch_real_t t83 = t81 + YAW3PITCH_C(0.8) * t82;
+    const yaw3pitch_real_t t83 = t81 + YAW3PITCH_C(0.8) * t82; /* link j3: motion */
     const yaw3pitch_real_t t84 = t15 * t80 - t13 * t83;
     const yaw3pitch_real_t t85 = t64 * t64;
     const yaw3pitch_real_t t86 = t66 * t66;
-    const yaw3pitch_real_t t87 = t86 + t85;
+    const yaw3pitch_real_t t87 = t86 + t85; /* link j4: motion */
     const yaw3pitch_real_t t88 = t84 + YAW3PITCH_C(0.7) * t87;
-    const yaw3pitch_real_t t89 = t13 * t80 + t15 * t83;
+    const yaw3pitch_real_t t89 = t13 * t80 + t15 * t83; /* link j3: motion */
     const yaw3pitch_real_t t90 = t63 * t64;
-    const yaw3pitch_real_t t91 = t89 + YAW3PITCH_C(0.7) * t90;
+    const yaw3pitch_real_t t91 = t89 + YAW3PITCH_C(0.7) * t90; /* link j4: motion */
     const yaw3pitch_real_t t92 = t0 * t88 + t1 * t91;
-    const yaw3pitch_real_t t93 = t66 * t63;
-    const yaw3pitch_real_t t94 = dq[1] * t61;
-    const yaw3pitch_real_t t95 = YAW3PITCH_C(-1.6) * t94;
-    const yaw3pitch_real_t t96 = t95 + YAW3PITCH_C(-1.4) * t93;
+    const yaw3pitch_real_t t93 = t66 * t63; /* link j3: motion */
+    const yaw3pitch_real_t t94 = dq[1] * t61; /* link j2: motion */
+    const yaw3pitch_real_t t95 = YAW3PITCH_C(-1.6) * t94; /* link j3: motion */
+    const yaw3pitch_real_t t96 = t95 + YAW3PITCH_C(-1.4) * t93; /* link j4: motion */
+    /* link j4: force and moment */
     const yaw3pitch_real_t t97 = t72 - parameters[XZ4] * t73 + parameters[YZ4] * (t75 - t74)
         + (parameters[MY4] * t96 + parameters[MZ4] * t92);
     const yaw3pitch_real_t t98 = YAW3PITCH_C(2.0) * t68;
     const yaw3pitch_real_t t99 = t70 * (parameters[XX4] - parameters[ZZ4]) - parameters[YY4] * t70
         + parameters[XY4] * t98;
-    const yaw3pitch_real_t t100 = t69 * t69;
+    const yaw3pitch_real_t t100 = t69 * t69; /* link j4: motion */
     const yaw3pitch_real_t t101 = t0 * t91 - t1 * t88;
+    /* link j4: force and moment */
     const yaw3pitch_real_t t102 = t99 - parameters[YZ4] * t73 + parameters[XZ4] * (t75 - t100)
         + (parameters[MZ4] * t101 + parameters[MX4] * t96);
-    const yaw3pitch_real_t t103 = t66 * t64;
-    const yaw3pitch_real_t t104 = YAW3PITCH_C(2.0) * t93;
+    const yaw3pitch_real_t t103 = t66 * t64; /* link j3: motion */
+    const yaw3pitch_real_t t104 = YAW3PITCH_C(2.0) * t93; /* link j4: motion */
+    /* link j3: force and moment */
     const yaw3pitch_real_t t105 = parameters[XY3] * t104 - (parameters[XX3] * t103 + t103 * (parameters[ZZ3]
         - parameters[YY3]));
     const yaw3pitch_real_t t106 = t105 - parameters[XZ3] * t90 + parameters[YZ3] * (t86 - t85)
         + (parameters[MY3] * t95 + parameters[MZ3] * t89);
-    const yaw3pitch_real_t t107 = t106 + (t1 * t97 + t0 * t102);
+    const yaw3pitch_real_t t107 = t106 + (t1 * t97 + t0 * t102); /* link j4: what it passes on */
+    /* link j4: force and moment */
     const yaw3pitch_real_t t108 = parameters[MX4] * t71 + parameters[MY4] * t98 - parameters[MZ4] * (t100
         + t74);
     const yaw3pitch_real_t t109 = t108 - parameters[M4] * t96;
-    const yaw3pitch_real_t t110 = YAW3PITCH_C(2.0) * t103;
+    const yaw3pitch_real_t t110 = YAW3PITCH_C(2.0) * t103; /* link j4: motion */
+    /* link j3: force and moment */
     const yaw3pitch_real_t t111 = parameters[YY3] * t93 - t93 * (parameters[XX3] - parameters[ZZ3])
         - parameters[XY3] * t110;
-    const yaw3pitch_real_t t112 = t63 * t63;
+    const yaw3pitch_real_t t112 = t63 * t63; /* link j3: motion */
+    /* link j3: force and moment */
     const yaw3pitch_real_t t113 = t111 + parameters[YZ3] * t90 - parameters[XZ3] * (t86 - t112)
         + (parameters[MZ3] * t84 - parameters[MX3] * t95);
+    /* link j4: what it passes on */
     const yaw3pitch_real_t t114 = t113 + (t0 * t97 - t1 * t102 + YAW3PITCH_C(0.7) * t109);
-    const yaw3pitch_real_t t115 = dq[1] * t62;
+    const yaw3pitch_real_t t115 = dq[1] * t62; /* link j2: motion */
     const yaw3pitch_real_t t116 = YAW3PITCH_C(2.0) * t94;
+    /* link j2: force and moment */
     const yaw3pitch_real_t t117 = t115 * (parameters[YY2] - parameters[ZZ2]) - t115 * parameters[XX2]
         + t116 * parameters[XY2];
     const yaw3pitch_real_t t118 = t117 - t82 * parameters[XZ2] + (t79 - t78) * parameters[YZ2]
         + t81 * parameters[MZ2];
+    /* link j3: force and moment */
     const yaw3pitch_real_t t119 = parameters[MX3] * t104 + parameters[MY3] * t110 - parameters[MZ3] * (t112
         + t85);
-    const yaw3pitch_real_t t120 = t119 - parameters[M3] * t95 + t109;
-    const yaw3pitch_real_t t121 = YAW3PITCH_C(2.0) * t115;
+    const yaw3pitch_real_t t120 = t119 - parameters[M3] * t95 + t109; /* link j4: what it passes on */
+    const yaw3pitch_real_t t121 = YAW3PITCH_C(2.0) * t115; /* link j2: motion */
+    /* link j2: force and moment */
     const yaw3pitch_real_t t122 = t94 * parameters[YY2] + t94 * (parameters[ZZ2] - parameters[XX2])
         - t121 * parameters[XY2];
-    const yaw3pitch_real_t t123 = t61 * t61;
+    const yaw3pitch_real_t t123 = t61 * t61; /* link j2: motion */
+    /* link j2: force and moment */
     const yaw3pitch_real_t t124 = t122 + t82 * parameters[YZ2] + (t123 - t79) * parameters[XZ2]
         + t77 * parameters[MZ2];
+    /* link j3: what it passes on */
     const yaw3pitch_real_t t125 = t124 + (t13 * t107 + t15 * t114 + YAW3PITCH_C(0.8) * t120);
+    /* link j2: what it passes on */
     const yaw3pitch_real_t t126 = t39 * (t118 + (t15 * t107 - t13 * t114)) + t37 * t125;
+    /* link j2: force and moment */
     const yaw3pitch_real_t t127 = t116 * parameters[MX2] + t121 * parameters[MY2] - (t123
         + t78) * parameters[MZ2];
+    /* link j4: force and moment */
     const yaw3pitch_real_t t128 = parameters[XY4] * (t100 - t74) - t28 * t73 + (parameters[MX4] * t92
         - parameters[MY4] * t101);
     const yaw3pitch_real_t t129 = input[3] - t128;
@@ -276,16 +302,20 @@ int yaw3pitch_forward_dynamics_standard(
         - parameters[M4] * t101;
     const yaw3pitch_real_t t132 = parameters[M4] * t92 - (parameters[MY4] * (t75 + t100)
         - parameters[MX4] * t73);
-    const yaw3pitch_real_t t133 = t0 * t131 - t1 * t132;
+    const yaw3pitch_real_t t133 = t0 * t131 - t1 * t132; /* link j4: what it passes on */
+    /* link j3: force and moment */
     const yaw3pitch_real_t t134 = parameters[XY3] * (t112 - t85) - t90 * (parameters[XX3] - parameters[YY3])
         + (parameters[MX3] * t89 + parameters[MY3] * t84);
-    const yaw3pitch_real_t t135 = t134 + (t128 - YAW3PITCH_C(0.7) * t133);
+    const yaw3pitch_real_t t135 = t134 + (t128 - YAW3PITCH_C(0.7) * t133); /* link j4: what it passes on */
     const yaw3pitch_real_t t136 = input[2] - t135 - t129 * t5;
     const yaw3pitch_real_t t137 = parameters[M3] * t84 + (parameters[MX3] * t87 - parameters[MY3] * t90)
         + (t1 * t131 + t0 * t132);
+    /* link j3: force and moment */
     const yaw3pitch_real_t t138 = parameters[M3] * t89 - (parameters[MY3] * (t86 + t112)
         - parameters[MX3] * t90);
+    /* link j3: what it passes on */
     const yaw3pitch_real_t t139 = t135 - YAW3PITCH_C(0.8) * (t13 * t137 - t15 * (t138 - t133));
+    /* link j2: force and moment */
     const yaw3pitch_real_t t140 = t82 * (parameters[XX2] - parameters[YY2]) - (t123 - t78) * parameters[XY2]
         - (t81 * parameters[MX2] + t77 * parameters[MY2]);
     const yaw3pitch_real_t t141 = input[1] + (t140 - t139) - t129 * t21 + t136 * t20;

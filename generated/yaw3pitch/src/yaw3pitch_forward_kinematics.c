@@ -24,15 +24,15 @@
  */
 #include "yaw3pitch_private.h"
 
-#if YAW3PITCH_GENERATION != 0x7BB9A1E4UL
+#if YAW3PITCH_GENERATION != 0x14CEE2C4UL
 #error "yaw3pitch.h and yaw3pitch_forward_kinematics.c are of different generations: generate the arm again"
 #endif
 
-int yaw3pitch_forward_kinematics(
+yaw3pitch_status_t yaw3pitch_forward_kinematics(
     const yaw3pitch_real_t q[YAW3PITCH_N_JOINTS],
     yaw3pitch_real_t out[16 * YAW3PITCH_N_LINKS])
 {
-    int status = YAW3PITCH_STATUS_OK;
+    yaw3pitch_status_t status = YAW3PITCH_STATUS_OK;
 
     if (!yaw3pitch_within_joints(q, YAW3PITCH_C(1.0e8))) {
         status |= YAW3PITCH_STATUS_INPUT;
@@ -57,7 +57,7 @@ int yaw3pitch_forward_kinematics(
     out[10] = YAW3PITCH_C(1.0);
     out[11] = YAW3PITCH_C(0.45);
     out[15] = YAW3PITCH_C(1.0);
-    const yaw3pitch_real_t t3 = t0 * t2;
+    const yaw3pitch_real_t t3 = t0 * t2; /* link j2: pose */
     out[16] = t3;
     const yaw3pitch_real_t t5 = t0 * t4;
     out[17] = -t5;
@@ -75,7 +75,7 @@ int yaw3pitch_forward_kinematics(
     out[25] = t2;
     out[27] = YAW3PITCH_C(0.45);
     out[31] = YAW3PITCH_C(1.0);
-    const yaw3pitch_real_t t12 = t10 * t3 - t11 * t5;
+    const yaw3pitch_real_t t12 = t10 * t3 - t11 * t5; /* link j3: pose */
     out[32] = t12;
     const yaw3pitch_real_t t13 = t11 * t3 + t10 * t5;
     out[33] = -t13;
@@ -89,11 +89,11 @@ int yaw3pitch_forward_kinematics(
     out[38] = -t0;
     const yaw3pitch_real_t t17 = t9 + YAW3PITCH_C(0.8) * t7;
     out[39] = t17;
-    const yaw3pitch_real_t t18 = t4 * t10 + t2 * t11;
+    const yaw3pitch_real_t t18 = t4 * t10 + t2 * t11; /* link j3: motion */
     out[40] = t18;
     const yaw3pitch_real_t t19 = t2 * t10 - t4 * t11;
     out[41] = t19;
-    const yaw3pitch_real_t t20 = YAW3PITCH_C(0.8) * t4 + YAW3PITCH_C(0.45);
+    const yaw3pitch_real_t t20 = YAW3PITCH_C(0.8) * t4 + YAW3PITCH_C(0.45); /* link j3: pose */
     out[43] = t20;
     out[47] = YAW3PITCH_C(1.0);
     out[48] = t21 * t12 - t22 * t13;

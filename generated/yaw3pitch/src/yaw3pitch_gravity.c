@@ -46,18 +46,18 @@
  */
 #include "yaw3pitch_private.h"
 
-#if YAW3PITCH_GENERATION != 0x7BB9A1E4UL
+#if YAW3PITCH_GENERATION != 0x14CEE2C4UL
 #error "yaw3pitch.h and yaw3pitch_gravity.c are of different generations: generate the arm again"
 #endif
 
-int yaw3pitch_gravity(
+yaw3pitch_status_t yaw3pitch_gravity(
     const yaw3pitch_real_t q[YAW3PITCH_N_JOINTS],
     const yaw3pitch_real_t parameters[YAW3PITCH_N_PARAMETERS],
     yaw3pitch_real_t out[YAW3PITCH_N_JOINTS])
 {
     enum { ZZ1R = 0, XX2R, XY2, XZ2R, YZ2, ZZ2R, MX2R, MY2, XX3R, XY3, XZ3R, YZ3, ZZ3R, MX3R, MY3, XX4R, XY4,
         XZ4, YZ4, ZZ4, MX4, MY4 };
-    int status = YAW3PITCH_STATUS_OK;
+    yaw3pitch_status_t status = YAW3PITCH_STATUS_OK;
 
     if (!yaw3pitch_within_joints(q, YAW3PITCH_C(1.0e8))
         || !YAW3PITCH_PARAMETERS_USABLE(yaw3pitch_within(parameters, 22, YAW3PITCH_C(1.0e18)))) {
@@ -74,12 +74,14 @@ int yaw3pitch_gravity(
     YAW3PITCH_SINCOS(q[2], &t5, &t2);
     yaw3pitch_real_t t7, t9;
     YAW3PITCH_SINCOS(q[3], &t7, &t9);
-    const yaw3pitch_real_t t1 = YAW3PITCH_C(-9.81) * t0;
+    const yaw3pitch_real_t t1 = YAW3PITCH_C(-9.81) * t0; /* link j2: motion */
     const yaw3pitch_real_t t4 = YAW3PITCH_C(9.81) * t3;
-    const yaw3pitch_real_t t6 = t2 * t1 - t5 * t4;
+    const yaw3pitch_real_t t6 = t2 * t1 - t5 * t4; /* link j3: motion */
     const yaw3pitch_real_t t8 = t5 * t1 + t2 * t4;
+    /* link j4: force and moment */
     const yaw3pitch_real_t t10 = parameters[MX4] * (t7 * t6 + t9 * t8) + parameters[MY4] * (t9 * t6
         - t7 * t8);
+    /* link j4: what it passes on */
     const yaw3pitch_real_t t11 = parameters[MX3R] * t8 + parameters[MY3] * t6 + t10;
     out[1] = parameters[MX2R] * t4 + parameters[MY2] * t1 + t11;
     out[2] = t11;

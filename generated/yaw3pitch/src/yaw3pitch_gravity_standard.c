@@ -64,11 +64,11 @@
  */
 #include "yaw3pitch_private.h"
 
-#if YAW3PITCH_GENERATION != 0x7BB9A1E4UL
+#if YAW3PITCH_GENERATION != 0x14CEE2C4UL
 #error "yaw3pitch.h and yaw3pitch_gravity_standard.c are of different generations: generate the arm again"
 #endif
 
-int yaw3pitch_gravity_standard(
+yaw3pitch_status_t yaw3pitch_gravity_standard(
     const yaw3pitch_real_t q[YAW3PITCH_N_JOINTS],
     const yaw3pitch_real_t parameters[YAW3PITCH_N_STANDARD_PARAMETERS],
     yaw3pitch_real_t out[YAW3PITCH_N_JOINTS])
@@ -76,7 +76,7 @@ int yaw3pitch_gravity_standard(
     enum { XX1 = 0, XY1, XZ1, YY1, YZ1, ZZ1, MX1, MY1, MZ1, M1, XX2, XY2, XZ2, YY2, YZ2, ZZ2, MX2, MY2, MZ2,
         M2, XX3, XY3, XZ3, YY3, YZ3, ZZ3, MX3, MY3, MZ3, M3, XX4, XY4, XZ4, YY4, YZ4, ZZ4, MX4, MY4, MZ4, M4
         };
-    int status = YAW3PITCH_STATUS_OK;
+    yaw3pitch_status_t status = YAW3PITCH_STATUS_OK;
 
     if (!yaw3pitch_within_joints(q, YAW3PITCH_C(1.0e8))
         || !YAW3PITCH_PARAMETERS_USABLE(yaw3pitch_within(parameters, 40, YAW3PITCH_C(1.0e18)))) {
@@ -93,25 +93,29 @@ int yaw3pitch_gravity_standard(
     YAW3PITCH_SINCOS(q[2], &t5, &t2);
     yaw3pitch_real_t t7, t9;
     YAW3PITCH_SINCOS(q[3], &t7, &t9);
-    const yaw3pitch_real_t t1 = YAW3PITCH_C(-9.81) * t0;
+    const yaw3pitch_real_t t1 = YAW3PITCH_C(-9.81) * t0; /* link j2: motion */
     const yaw3pitch_real_t t4 = YAW3PITCH_C(-9.81) * t3;
-    const yaw3pitch_real_t t6 = t2 * t1 + t5 * t4;
+    const yaw3pitch_real_t t6 = t2 * t1 + t5 * t4; /* link j3: motion */
     const yaw3pitch_real_t t8 = t2 * t4 - t5 * t1;
-    const yaw3pitch_real_t t10 = t9 * t8 - t7 * t6;
-    const yaw3pitch_real_t t11 = t10 * parameters[MZ4];
-    const yaw3pitch_real_t t12 = t9 * t6 + t7 * t8;
-    const yaw3pitch_real_t t13 = t12 * parameters[MZ4];
+    const yaw3pitch_real_t t10 = t9 * t8 - t7 * t6; /* link j4: motion */
+    const yaw3pitch_real_t t11 = t10 * parameters[MZ4]; /* link j4: force and moment */
+    const yaw3pitch_real_t t12 = t9 * t6 + t7 * t8; /* link j4: motion */
+    const yaw3pitch_real_t t13 = t12 * parameters[MZ4]; /* link j4: force and moment */
+    /* link j4: what it passes on */
     const yaw3pitch_real_t t14 = t8 * parameters[MZ3] + (t9 * t11 + t7 * t13);
     const yaw3pitch_real_t t15 = t7 * t11 - t9 * t13 - t6 * parameters[MZ3];
+    /* link j2: what it passes on */
     const yaw3pitch_real_t t16 = t0 * (t4 * parameters[MZ2] + (t2 * t14 - t5 * t15));
     const yaw3pitch_real_t t17 = t3 * (t5 * t14 + t2 * t15 - t1 * parameters[MZ2]);
     out[0] = t16 + t17;
+    /* link j4: force and moment */
     const yaw3pitch_real_t t18 = t12 * parameters[MY4] - t10 * parameters[MX4];
     const yaw3pitch_real_t t19 = t12 * parameters[M4];
     const yaw3pitch_real_t t20 = t10 * parameters[M4];
-    const yaw3pitch_real_t t21 = t7 * t19 + t9 * t20;
+    const yaw3pitch_real_t t21 = t7 * t19 + t9 * t20; /* link j4: what it passes on */
     const yaw3pitch_real_t t22 = t6 * parameters[MY3] - t8 * parameters[MX3] + (t18
         + YAW3PITCH_C(-0.7) * t21);
+    /* link j3: what it passes on */
     const yaw3pitch_real_t t23 = t5 * (t7 * t20 - t9 * t19 - t6 * parameters[M3]);
     const yaw3pitch_real_t t24 = t22 + YAW3PITCH_C(0.8) * (t23 - t2 * (t8 * parameters[M3] + t21));
     out[1] = t1 * parameters[MY2] - t4 * parameters[MX2] + t24;

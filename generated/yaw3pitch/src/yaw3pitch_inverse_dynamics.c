@@ -48,11 +48,11 @@
  */
 #include "yaw3pitch_private.h"
 
-#if YAW3PITCH_GENERATION != 0x7BB9A1E4UL
+#if YAW3PITCH_GENERATION != 0x14CEE2C4UL
 #error "yaw3pitch.h and yaw3pitch_inverse_dynamics.c are of different generations: generate the arm again"
 #endif
 
-int yaw3pitch_inverse_dynamics(
+yaw3pitch_status_t yaw3pitch_inverse_dynamics(
     const yaw3pitch_real_t q[YAW3PITCH_N_JOINTS],
     const yaw3pitch_real_t dq[YAW3PITCH_N_JOINTS],
     const yaw3pitch_real_t ddq[YAW3PITCH_N_JOINTS],
@@ -61,7 +61,7 @@ int yaw3pitch_inverse_dynamics(
 {
     enum { ZZ1R = 0, XX2R, XY2, XZ2R, YZ2, ZZ2R, MX2R, MY2, XX3R, XY3, XZ3R, YZ3, ZZ3R, MX3R, MY3, XX4R, XY4,
         XZ4, YZ4, ZZ4, MX4, MY4 };
-    int status = YAW3PITCH_STATUS_OK;
+    yaw3pitch_status_t status = YAW3PITCH_STATUS_OK;
 
     if (!yaw3pitch_within_joints(q, YAW3PITCH_C(1.0e8))
         || !yaw3pitch_within_joints(dq, YAW3PITCH_C(1.0e10))
@@ -80,12 +80,12 @@ int yaw3pitch_inverse_dynamics(
     YAW3PITCH_SINCOS(q[2], &t3, &t1);
     yaw3pitch_real_t t5, t7;
     YAW3PITCH_SINCOS(q[3], &t5, &t7);
-    const yaw3pitch_real_t t4 = t0 * t1 + t2 * t3;
+    const yaw3pitch_real_t t4 = t0 * t1 + t2 * t3; /* link j3: motion */
     const yaw3pitch_real_t t6 = t2 * t1 - t0 * t3;
-    const yaw3pitch_real_t t8 = t7 * t6 - t5 * t4;
+    const yaw3pitch_real_t t8 = t7 * t6 - t5 * t4; /* link j4: motion */
     const yaw3pitch_real_t t9 = dq[0] * t8;
-    const yaw3pitch_real_t t10 = dq[1] + dq[2];
-    const yaw3pitch_real_t t11 = dq[3] + t10;
+    const yaw3pitch_real_t t10 = dq[1] + dq[2]; /* link j3: motion */
+    const yaw3pitch_real_t t11 = dq[3] + t10; /* link j4: motion */
     const yaw3pitch_real_t t12 = t11 * t9;
     const yaw3pitch_real_t t13 = t7 * t4 + t5 * t6;
     const yaw3pitch_real_t t14 = ddq[0] * t13;
@@ -93,85 +93,99 @@ int yaw3pitch_inverse_dynamics(
     const yaw3pitch_real_t t16 = dq[0] * t13;
     const yaw3pitch_real_t t17 = t11 * t16;
     const yaw3pitch_real_t t18 = ddq[0] * t8;
-    const yaw3pitch_real_t t19 = t18 - t17 - t17;
-    const yaw3pitch_real_t t20 = t16 * t9;
-    const yaw3pitch_real_t t21 = ddq[1] + ddq[2];
-    const yaw3pitch_real_t t22 = ddq[3] + t21;
-    const yaw3pitch_real_t t23 = t20 + t22;
+    const yaw3pitch_real_t t19 = t18 - t17 - t17; /* link j4: force and moment */
+    const yaw3pitch_real_t t20 = t16 * t9; /* link j4: motion */
+    const yaw3pitch_real_t t21 = ddq[1] + ddq[2]; /* link j3: motion */
+    const yaw3pitch_real_t t22 = ddq[3] + t21; /* link j4: motion */
+    const yaw3pitch_real_t t23 = t20 + t22; /* link j4: force and moment */
     const yaw3pitch_real_t t24 = parameters[ZZ4] * t12 + parameters[XX4R] * t15 + parameters[XY4] * t19
         + parameters[XZ4] * t23;
-    const yaw3pitch_real_t t25 = t9 * t9;
+    const yaw3pitch_real_t t25 = t9 * t9; /* link j4: motion */
     const yaw3pitch_real_t t26 = t11 * t11;
-    const yaw3pitch_real_t t27 = dq[0] * t4;
+    const yaw3pitch_real_t t27 = dq[0] * t4; /* link j3: motion */
     const yaw3pitch_real_t t28 = t10 * t27;
     const yaw3pitch_real_t t29 = ddq[0] * t6;
-    const yaw3pitch_real_t t30 = t29 - t28 - t28;
-    const yaw3pitch_real_t t31 = t0 * dq[0];
+    const yaw3pitch_real_t t30 = t29 - t28 - t28; /* link j4: motion */
+    const yaw3pitch_real_t t31 = t0 * dq[0]; /* link j2: motion */
     const yaw3pitch_real_t t32 = dq[1] * t31;
     const yaw3pitch_real_t t33 = t2 * ddq[0];
-    const yaw3pitch_real_t t34 = t33 - t32 - t32;
-    const yaw3pitch_real_t t35 = YAW3PITCH_C(-0.12) * ddq[0];
-    const yaw3pitch_real_t t36 = t35 + YAW3PITCH_C(-0.8) * t34;
-    const yaw3pitch_real_t t37 = t36 + YAW3PITCH_C(-0.7) * t30;
+    const yaw3pitch_real_t t34 = t33 - t32 - t32; /* link j3: motion */
+    const yaw3pitch_real_t t35 = YAW3PITCH_C(-0.12) * ddq[0]; /* link j2: motion */
+    const yaw3pitch_real_t t36 = t35 + YAW3PITCH_C(-0.8) * t34; /* link j3: motion */
+    const yaw3pitch_real_t t37 = t36 + YAW3PITCH_C(-0.7) * t30; /* link j4: motion */
+    /* link j4: force and moment */
     const yaw3pitch_real_t t38 = parameters[YZ4] * (t25 - t26) + t24 + parameters[MY4] * t37;
     const yaw3pitch_real_t t39 = t12 + t15;
     const yaw3pitch_real_t t40 = t20 - t22;
     const yaw3pitch_real_t t41 = (parameters[ZZ4] - parameters[XX4R]) * t17 - parameters[XY4] * t39
         + parameters[YZ4] * t40;
-    const yaw3pitch_real_t t42 = t16 * t16;
+    const yaw3pitch_real_t t42 = t16 * t16; /* link j4: motion */
+    /* link j4: force and moment */
     const yaw3pitch_real_t t43 = parameters[XZ4] * (t42 - t26) + t41 + parameters[MX4] * t37;
-    const yaw3pitch_real_t t44 = dq[0] * t6;
+    const yaw3pitch_real_t t44 = dq[0] * t6; /* link j3: motion */
     const yaw3pitch_real_t t45 = t10 * t44;
     const yaw3pitch_real_t t46 = ddq[0] * t4;
     const yaw3pitch_real_t t47 = t45 + t46;
     const yaw3pitch_real_t t48 = t27 * t44;
-    const yaw3pitch_real_t t49 = t48 + t21;
+    const yaw3pitch_real_t t49 = t48 + t21; /* link j4: motion */
+    /* link j3: force and moment */
     const yaw3pitch_real_t t50 = parameters[ZZ3R] * t45 + parameters[XX3R] * t47 + parameters[XY3] * t30
         + parameters[XZ3R] * t49;
-    const yaw3pitch_real_t t51 = t44 * t44;
+    const yaw3pitch_real_t t51 = t44 * t44; /* link j3: motion */
     const yaw3pitch_real_t t52 = t10 * t10;
+    /* link j4: what it passes on */
     const yaw3pitch_real_t t53 = parameters[MY3] * t36 + (parameters[YZ3] * (t51 - t52) + t50) + (t7 * t38
         + t5 * t43);
+    /* link j4: force and moment */
     const yaw3pitch_real_t t54 = parameters[MX4] * t19 - parameters[MY4] * t39;
-    const yaw3pitch_real_t t55 = t45 + t47;
+    const yaw3pitch_real_t t55 = t45 + t47; /* link j4: motion */
     const yaw3pitch_real_t t56 = t48 - t21;
+    /* link j3: force and moment */
     const yaw3pitch_real_t t57 = (parameters[XX3R] - parameters[ZZ3R]) * t28 + parameters[XY3] * t55
         - parameters[YZ3] * t56;
-    const yaw3pitch_real_t t58 = t27 * t27;
+    const yaw3pitch_real_t t58 = t27 * t27; /* link j3: motion */
+    /* link j4: what it passes on */
     const yaw3pitch_real_t t59 = parameters[XZ3R] * (t52 - t58) + t57 - parameters[MX3R] * t36 - (t7 * t43
         - t5 * t38 + YAW3PITCH_C(-0.7) * t54);
-    const yaw3pitch_real_t t60 = t2 * dq[0];
+    const yaw3pitch_real_t t60 = t2 * dq[0]; /* link j2: motion */
     const yaw3pitch_real_t t61 = dq[1] * t60;
     const yaw3pitch_real_t t62 = t0 * ddq[0];
     const yaw3pitch_real_t t63 = t61 + t62;
     const yaw3pitch_real_t t64 = t31 * t60;
-    const yaw3pitch_real_t t65 = ddq[1] + t64;
+    const yaw3pitch_real_t t65 = ddq[1] + t64; /* link j3: motion */
+    /* link j2: force and moment */
     const yaw3pitch_real_t t66 = parameters[ZZ2R] * t61 + parameters[XX2R] * t63 + parameters[XY2] * t34
         + parameters[XZ2R] * t65;
-    const yaw3pitch_real_t t67 = t60 * t60;
+    const yaw3pitch_real_t t67 = t60 * t60; /* link j2: motion */
     const yaw3pitch_real_t t68 = dq[1] * dq[1];
+    /* link j3: what it passes on */
     const yaw3pitch_real_t t69 = parameters[YZ2] * (t67 - t68) + t66 + parameters[MY2] * t35 + (t1 * t53
         - t3 * t59);
+    /* link j4: what it passes on */
     const yaw3pitch_real_t t70 = parameters[MX3R] * t30 - parameters[MY3] * t55 + t54;
-    const yaw3pitch_real_t t71 = t61 + t63;
+    const yaw3pitch_real_t t71 = t61 + t63; /* link j3: motion */
+    /* link j2: force and moment */
     const yaw3pitch_real_t t72 = t32 * (parameters[XX2R] - parameters[ZZ2R]) + parameters[XY2] * t71
         + parameters[YZ2] * (ddq[1] - t64);
-    const yaw3pitch_real_t t73 = t31 * t31;
+    const yaw3pitch_real_t t73 = t31 * t31; /* link j2: motion */
+    /* link j3: what it passes on */
     const yaw3pitch_real_t t74 = parameters[XZ2R] * (t68 - t73) + t72 - parameters[MX2R] * t35 + (t3 * t53
         + t1 * t59 + YAW3PITCH_C(0.8) * t70);
+    /* link j2: what it passes on */
     const yaw3pitch_real_t t75 = t0 * t69 + t2 * t74 + YAW3PITCH_C(0.12) * (parameters[MX2R] * t34
         - parameters[MY2] * t71 + t70);
     out[0] = parameters[ZZ1R] * ddq[0] + t75;
-    const yaw3pitch_real_t t76 = YAW3PITCH_C(0.12) * (dq[0] * dq[0]);
+    const yaw3pitch_real_t t76 = YAW3PITCH_C(0.12) * (dq[0] * dq[0]); /* link j2: motion */
     const yaw3pitch_real_t t77 = t2 * t76 + YAW3PITCH_C(-9.81) * t0;
-    const yaw3pitch_real_t t78 = t77 + YAW3PITCH_C(0.8) * (t67 + t68);
-    const yaw3pitch_real_t t79 = t0 * t76 + YAW3PITCH_C(9.81) * t2;
-    const yaw3pitch_real_t t80 = t79 + YAW3PITCH_C(0.8) * t65;
+    const yaw3pitch_real_t t78 = t77 + YAW3PITCH_C(0.8) * (t67 + t68); /* link j3: motion */
+    const yaw3pitch_real_t t79 = t0 * t76 + YAW3PITCH_C(9.81) * t2; /* link j2: motion */
+    const yaw3pitch_real_t t80 = t79 + YAW3PITCH_C(0.8) * t65; /* link j3: motion */
     const yaw3pitch_real_t t81 = t1 * t78 - t3 * t80;
-    const yaw3pitch_real_t t82 = t52 + t51;
+    const yaw3pitch_real_t t82 = t52 + t51; /* link j4: motion */
     const yaw3pitch_real_t t83 = YAW3PITCH_C(0.7) * t82 + t81;
-    const yaw3pitch_real_t t84 = t3 * t78 + t1 * t80;
-    const yaw3pitch_real_t t85 = t84 - YAW3PITCH_C(-0.7) * t49;
+    const yaw3pitch_real_t t84 = t3 * t78 + t1 * t80; /* link j3: motion */
+    const yaw3pitch_real_t t85 = t84 - YAW3PITCH_C(-0.7) * t49; /* link j4: motion */
+    /* link j4: force and moment */
     const yaw3pitch_real_t t86 = parameters[MX4] * (t5 * t83 + t7 * t85) + parameters[MY4] * (t7 * t83
         - t5 * t85);
     const yaw3pitch_real_t t87 = parameters[ZZ4] * t22 - parameters[XX4R] * t20 + parameters[YZ4] * t18
@@ -179,14 +193,17 @@ int yaw3pitch_inverse_dynamics(
     const yaw3pitch_real_t t88 = parameters[XY4] * (t42 - t25) + t87 + t86;
     const yaw3pitch_real_t t89 = parameters[MY4] * t40 - parameters[MX4] * (t26 + t25);
     const yaw3pitch_real_t t90 = parameters[MY4] * (t26 + t42) - parameters[MX4] * t23;
-    const yaw3pitch_real_t t91 = t5 * t89 - t7 * t90;
+    const yaw3pitch_real_t t91 = t5 * t89 - t7 * t90; /* link j4: what it passes on */
+    /* link j3: force and moment */
     const yaw3pitch_real_t t92 = parameters[ZZ3R] * t21 - parameters[XX3R] * t48 + parameters[YZ3] * t29
         + parameters[XZ3R] * t46;
     const yaw3pitch_real_t t93 = parameters[MX3R] * t84 + parameters[MY3] * t81 + (parameters[XY3] * (t58
         - t51) + t92);
-    const yaw3pitch_real_t t94 = t93 + (t88 + YAW3PITCH_C(0.7) * t91);
+    const yaw3pitch_real_t t94 = t93 + (t88 + YAW3PITCH_C(0.7) * t91); /* link j4: what it passes on */
     const yaw3pitch_real_t t95 = parameters[MY3] * t56 - parameters[MX3R] * t82 + (t7 * t89 + t5 * t90);
+    /* link j3: what it passes on */
     const yaw3pitch_real_t t96 = t1 * (parameters[MX3R] * t49 - parameters[MY3] * (t52 + t58) + t91);
+    /* link j2: force and moment */
     const yaw3pitch_real_t t97 = parameters[ZZ2R] * ddq[1] - parameters[XX2R] * t64 + parameters[YZ2] * t33
         + parameters[XZ2R] * t62;
     const yaw3pitch_real_t t98 = parameters[MX2R] * t79 + parameters[MY2] * t77 + (parameters[XY2] * (t73

@@ -9,14 +9,14 @@
  *
  * Operations: 1070 (585 mul, 485 add, 0 neg), 6 trig.
  *
- * @param[in]   q             [4]   [rad]                  joint coordinates; norm at most 10000
- * @param[in]   dq            [4]   [rad/s]                joint velocities; norm at most 100000
- * @param[in]   ddq           [4]   [rad/s^2]              joint accelerations; norm at most 1e+08
- * @param[in]   parameters    [22]                         base parameters; norm at most 1e+09
- * @param[out]  input         [4]   [N m]                  inputs: motor currents, efforts where undriven
- * @param[out]  input_by_q    [16]  [(N m) per (rad)]      d input / d q; 4 x 4, row-major
- * @param[out]  input_by_dq   [16]  [(N m) per (rad/s)]    d input / d dq; 4 x 4, row-major
- * @param[out]  input_by_ddq  [16]  [(N m) per (rad/s^2)]  d input / d ddq; 4 x 4, row-major
+ * @param[in]   q             [4]   [rad]                joint coordinates; norm at most 10000
+ * @param[in]   dq            [4]   [rad/s]              joint velocities; norm at most 100000
+ * @param[in]   ddq           [4]   [rad/s^2]            joint accelerations; norm at most 1e+08
+ * @param[in]   parameters    [22]                       base parameters; norm at most 1e+09
+ * @param[out]  input         [4]   [N m]                inputs: motor currents, efforts where undriven
+ * @param[out]  input_by_q    [16]  [N m per rad]        d input / d q; 4 x 4, row-major
+ * @param[out]  input_by_dq   [16]  [N m per (rad/s)]    d input / d dq; 4 x 4, row-major
+ * @param[out]  input_by_ddq  [16]  [N m per (rad/s^2)]  d input / d ddq; 4 x 4, row-major
  *
  * Coordinates:
  *
@@ -52,11 +52,11 @@
  */
 #include "yaw3pitch_private.h"
 
-#if YAW3PITCH_GENERATION != 0x7BB9A1E4UL
+#if YAW3PITCH_GENERATION != 0x14CEE2C4UL
 #error "yaw3pitch.h and yaw3pitch_inverse_dynamics_derivatives.c are of different generations: generate the arm again"
 #endif
 
-int yaw3pitch_inverse_dynamics_derivatives(
+yaw3pitch_status_t yaw3pitch_inverse_dynamics_derivatives(
     const yaw3pitch_real_t q[YAW3PITCH_N_JOINTS],
     const yaw3pitch_real_t dq[YAW3PITCH_N_JOINTS],
     const yaw3pitch_real_t ddq[YAW3PITCH_N_JOINTS],
@@ -68,7 +68,7 @@ int yaw3pitch_inverse_dynamics_derivatives(
 {
     enum { ZZ1R = 0, XX2R, XY2, XZ2R, YZ2, ZZ2R, MX2R, MY2, XX3R, XY3, XZ3R, YZ3, ZZ3R, MX3R, MY3, XX4R, XY4,
         XZ4, YZ4, ZZ4, MX4, MY4 };
-    int status = YAW3PITCH_STATUS_OK;
+    yaw3pitch_status_t status = YAW3PITCH_STATUS_OK;
 
     if (!yaw3pitch_within_joints(q, YAW3PITCH_C(1.0e8))
         || !yaw3pitch_within_joints(dq, YAW3PITCH_C(1.0e10))
@@ -90,12 +90,12 @@ int yaw3pitch_inverse_dynamics_derivatives(
     YAW3PITCH_SINCOS(q[2], &t3, &t1);
     yaw3pitch_real_t t5, t7;
     YAW3PITCH_SINCOS(q[3], &t5, &t7);
-    const yaw3pitch_real_t t4 = t0 * t1 + t2 * t3;
+    const yaw3pitch_real_t t4 = t0 * t1 + t2 * t3; /* link j3: motion */
     const yaw3pitch_real_t t6 = t2 * t1 - t0 * t3;
-    const yaw3pitch_real_t t8 = t7 * t6 - t5 * t4;
+    const yaw3pitch_real_t t8 = t7 * t6 - t5 * t4; /* link j4: motion */
     const yaw3pitch_real_t t9 = dq[0] * t8;
-    const yaw3pitch_real_t t10 = dq[1] + dq[2];
-    const yaw3pitch_real_t t11 = dq[3] + t10;
+    const yaw3pitch_real_t t10 = dq[1] + dq[2]; /* link j3: motion */
+    const yaw3pitch_real_t t11 = dq[3] + t10; /* link j4: motion */
     const yaw3pitch_real_t t12 = t11 * t9;
     const yaw3pitch_real_t t13 = t7 * t4 + t5 * t6;
     const yaw3pitch_real_t t14 = ddq[0] * t13;
@@ -103,105 +103,122 @@ int yaw3pitch_inverse_dynamics_derivatives(
     const yaw3pitch_real_t t16 = dq[0] * t13;
     const yaw3pitch_real_t t17 = t11 * t16;
     const yaw3pitch_real_t t18 = ddq[0] * t8;
-    const yaw3pitch_real_t t19 = t17 + (t17 - t18);
-    const yaw3pitch_real_t t20 = t16 * t9;
-    const yaw3pitch_real_t t21 = ddq[1] + ddq[2];
-    const yaw3pitch_real_t t22 = ddq[3] + t21;
-    const yaw3pitch_real_t t23 = t20 + t22;
+    const yaw3pitch_real_t t19 = t17 + (t17 - t18); /* link j4: force and moment */
+    const yaw3pitch_real_t t20 = t16 * t9; /* link j4: motion */
+    const yaw3pitch_real_t t21 = ddq[1] + ddq[2]; /* link j3: motion */
+    const yaw3pitch_real_t t22 = ddq[3] + t21; /* link j4: motion */
+    const yaw3pitch_real_t t23 = t20 + t22; /* link j4: force and moment */
     const yaw3pitch_real_t t24 = parameters[XY4] * t19 - (parameters[ZZ4] * t12 + parameters[XX4R] * t15)
         - parameters[XZ4] * t23;
-    const yaw3pitch_real_t t25 = t9 * t9;
+    const yaw3pitch_real_t t25 = t9 * t9; /* link j4: motion */
     const yaw3pitch_real_t t26 = t11 * t11;
-    const yaw3pitch_real_t t27 = dq[0] * t4;
+    const yaw3pitch_real_t t27 = dq[0] * t4; /* link j3: motion */
     const yaw3pitch_real_t t28 = t10 * t27;
     const yaw3pitch_real_t t29 = ddq[0] * t6;
-    const yaw3pitch_real_t t30 = t29 - t28 - t28;
-    const yaw3pitch_real_t t31 = t0 * dq[0];
+    const yaw3pitch_real_t t30 = t29 - t28 - t28; /* link j4: motion */
+    const yaw3pitch_real_t t31 = t0 * dq[0]; /* link j2: motion */
     const yaw3pitch_real_t t32 = dq[1] * t31;
     const yaw3pitch_real_t t33 = t2 * ddq[0];
-    const yaw3pitch_real_t t34 = t33 - t32 - t32;
-    const yaw3pitch_real_t t35 = YAW3PITCH_C(-0.12) * ddq[0];
-    const yaw3pitch_real_t t36 = t35 + YAW3PITCH_C(-0.8) * t34;
-    const yaw3pitch_real_t t37 = t36 + YAW3PITCH_C(-0.7) * t30;
+    const yaw3pitch_real_t t34 = t33 - t32 - t32; /* link j3: motion */
+    const yaw3pitch_real_t t35 = YAW3PITCH_C(-0.12) * ddq[0]; /* link j2: motion */
+    const yaw3pitch_real_t t36 = t35 + YAW3PITCH_C(-0.8) * t34; /* link j3: motion */
+    const yaw3pitch_real_t t37 = t36 + YAW3PITCH_C(-0.7) * t30; /* link j4: motion */
+    /* link j4: force and moment */
     const yaw3pitch_real_t t38 = parameters[YZ4] * (t26 - t25) + t24 - parameters[MY4] * t37;
     const yaw3pitch_real_t t39 = t12 + t15;
     const yaw3pitch_real_t t40 = t20 - t22;
     const yaw3pitch_real_t t41 = (parameters[ZZ4] - parameters[XX4R]) * t17 - parameters[XY4] * t39
         + parameters[YZ4] * t40;
-    const yaw3pitch_real_t t42 = t16 * t16;
+    const yaw3pitch_real_t t42 = t16 * t16; /* link j4: motion */
+    /* link j4: force and moment */
     const yaw3pitch_real_t t43 = parameters[XZ4] * (t42 - t26) + t41 + parameters[MX4] * t37;
-    const yaw3pitch_real_t t44 = dq[0] * t6;
+    const yaw3pitch_real_t t44 = dq[0] * t6; /* link j3: motion */
     const yaw3pitch_real_t t45 = t10 * t44;
     const yaw3pitch_real_t t46 = ddq[0] * t4;
     const yaw3pitch_real_t t47 = t45 + t46;
     const yaw3pitch_real_t t48 = t27 * t44;
-    const yaw3pitch_real_t t49 = t48 + t21;
+    const yaw3pitch_real_t t49 = t48 + t21; /* link j4: motion */
+    /* link j3: force and moment */
     const yaw3pitch_real_t t50 = parameters[ZZ3R] * t45 + parameters[XX3R] * t47 + parameters[XY3] * t30
         + parameters[XZ3R] * t49;
-    const yaw3pitch_real_t t51 = t44 * t44;
+    const yaw3pitch_real_t t51 = t44 * t44; /* link j3: motion */
     const yaw3pitch_real_t t52 = t10 * t10;
+    /* link j4: what it passes on */
     const yaw3pitch_real_t t53 = parameters[YZ3] * (t52 - t51) - t50 - parameters[MY3] * t36 + (t7 * t38
         - t5 * t43);
+    /* link j4: force and moment */
     const yaw3pitch_real_t t54 = parameters[MX4] * t19 + parameters[MY4] * t39;
-    const yaw3pitch_real_t t55 = t45 + t47;
+    const yaw3pitch_real_t t55 = t45 + t47; /* link j4: motion */
     const yaw3pitch_real_t t56 = t48 - t21;
+    /* link j3: force and moment */
     const yaw3pitch_real_t t57 = (parameters[ZZ3R] - parameters[XX3R]) * t28 - parameters[XY3] * t55
         + parameters[YZ3] * t56;
-    const yaw3pitch_real_t t58 = t27 * t27;
+    const yaw3pitch_real_t t58 = t27 * t27; /* link j3: motion */
+    /* link j4: what it passes on */
     const yaw3pitch_real_t t59 = parameters[MX3R] * t36 + (parameters[XZ3R] * (t58 - t52) + t57) + (t5 * t38
         + t7 * t43 + YAW3PITCH_C(0.7) * t54);
-    const yaw3pitch_real_t t60 = t2 * dq[0];
+    const yaw3pitch_real_t t60 = t2 * dq[0]; /* link j2: motion */
     const yaw3pitch_real_t t61 = dq[1] * t60;
     const yaw3pitch_real_t t62 = t0 * ddq[0];
     const yaw3pitch_real_t t63 = t61 + t62;
     const yaw3pitch_real_t t64 = t31 * t60;
-    const yaw3pitch_real_t t65 = ddq[1] + t64;
+    const yaw3pitch_real_t t65 = ddq[1] + t64; /* link j3: motion */
+    /* link j2: force and moment */
     const yaw3pitch_real_t t66 = parameters[ZZ2R] * t61 + parameters[XX2R] * t63 + parameters[XY2] * t34
         + parameters[XZ2R] * t65;
-    const yaw3pitch_real_t t67 = t60 * t60;
+    const yaw3pitch_real_t t67 = t60 * t60; /* link j2: motion */
     const yaw3pitch_real_t t68 = dq[1] * dq[1];
+    /* link j3: what it passes on */
     const yaw3pitch_real_t t69 = parameters[YZ2] * (t67 - t68) + t66 + parameters[MY2] * t35 + (t3 * t59
         - t1 * t53);
+    /* link j4: what it passes on */
     const yaw3pitch_real_t t70 = parameters[MX3R] * t30 - parameters[MY3] * t55 - t54;
-    const yaw3pitch_real_t t71 = t61 + t63;
+    const yaw3pitch_real_t t71 = t61 + t63; /* link j3: motion */
+    /* link j2: force and moment */
     const yaw3pitch_real_t t72 = t32 * (parameters[ZZ2R] - parameters[XX2R]) - parameters[XY2] * t71
         + parameters[YZ2] * (t64 - ddq[1]);
-    const yaw3pitch_real_t t73 = t31 * t31;
+    const yaw3pitch_real_t t73 = t31 * t31; /* link j2: motion */
+    /* link j3: what it passes on */
     const yaw3pitch_real_t t74 = parameters[XZ2R] * (t73 - t68) + t72 + parameters[MX2R] * t35 + (t3 * t53
         + t1 * t59 + YAW3PITCH_C(-0.8) * t70);
+    /* link j2: what it passes on */
     const yaw3pitch_real_t t75 = t0 * t69 - t2 * t74 + YAW3PITCH_C(0.12) * (parameters[MX2R] * t34
         - parameters[MY2] * t71 + t70);
     input[0] = parameters[ZZ1R] * ddq[0] + t75;
-    const yaw3pitch_real_t t76 = YAW3PITCH_C(-0.12) * (dq[0] * dq[0]);
+    const yaw3pitch_real_t t76 = YAW3PITCH_C(-0.12) * (dq[0] * dq[0]); /* link j2: motion */
     const yaw3pitch_real_t t77 = t2 * t76 + YAW3PITCH_C(9.81) * t0;
-    const yaw3pitch_real_t t78 = YAW3PITCH_C(0.8) * (t67 + t68) - t77;
-    const yaw3pitch_real_t t79 = t0 * t76 + YAW3PITCH_C(-9.81) * t2;
-    const yaw3pitch_real_t t80 = t79 + YAW3PITCH_C(-0.8) * t65;
+    const yaw3pitch_real_t t78 = YAW3PITCH_C(0.8) * (t67 + t68) - t77; /* link j3: motion */
+    const yaw3pitch_real_t t79 = t0 * t76 + YAW3PITCH_C(-9.81) * t2; /* link j2: motion */
+    const yaw3pitch_real_t t80 = t79 + YAW3PITCH_C(-0.8) * t65; /* link j3: motion */
     const yaw3pitch_real_t t81 = t1 * t78 + t3 * t80;
-    const yaw3pitch_real_t t82 = t52 + t51;
+    const yaw3pitch_real_t t82 = t52 + t51; /* link j4: motion */
     const yaw3pitch_real_t t83 = YAW3PITCH_C(0.7) * t82 + t81;
-    const yaw3pitch_real_t t84 = t1 * t80 - t3 * t78;
-    const yaw3pitch_real_t t85 = t84 + YAW3PITCH_C(-0.7) * t49;
+    const yaw3pitch_real_t t84 = t1 * t80 - t3 * t78; /* link j3: motion */
+    const yaw3pitch_real_t t85 = t84 + YAW3PITCH_C(-0.7) * t49; /* link j4: motion */
     const yaw3pitch_real_t t86 = t5 * t83 - t7 * t85;
     const yaw3pitch_real_t t87 = t7 * t83 + t5 * t85;
+    /* link j4: force and moment */
     const yaw3pitch_real_t t88 = parameters[ZZ4] * t22 - parameters[XX4R] * t20 + parameters[YZ4] * t18
         + parameters[XZ4] * t14;
     const yaw3pitch_real_t t89 = parameters[XY4] * (t42 - t25) + t88 + (parameters[MX4] * t86
         + parameters[MY4] * t87);
     const yaw3pitch_real_t t90 = parameters[MX4] * (t26 + t25) - parameters[MY4] * t40;
     const yaw3pitch_real_t t91 = parameters[MY4] * (t26 + t42) - parameters[MX4] * t23;
-    const yaw3pitch_real_t t92 = t5 * t90 + t7 * t91;
+    const yaw3pitch_real_t t92 = t5 * t90 + t7 * t91; /* link j4: what it passes on */
+    /* link j3: force and moment */
     const yaw3pitch_real_t t93 = parameters[ZZ3R] * t21 - parameters[XX3R] * t48 + parameters[YZ3] * t29
         + parameters[XZ3R] * t46;
     const yaw3pitch_real_t t94 = parameters[MY3] * t81 - parameters[MX3R] * t84 + (parameters[XY3] * (t58
         - t51) + t93);
-    const yaw3pitch_real_t t95 = t94 + (t89 + YAW3PITCH_C(-0.7) * t92);
+    const yaw3pitch_real_t t95 = t94 + (t89 + YAW3PITCH_C(-0.7) * t92); /* link j4: what it passes on */
     const yaw3pitch_real_t t96 = parameters[MY3] * t56 - parameters[MX3R] * t82 + (t5 * t91 - t7 * t90);
     const yaw3pitch_real_t t97 = parameters[MY3] * (t52 + t58) - parameters[MX3R] * t49 + t92;
+    /* link j2: force and moment */
     const yaw3pitch_real_t t98 = parameters[ZZ2R] * ddq[1] - parameters[XX2R] * t64 + parameters[YZ2] * t33
         + parameters[XZ2R] * t62;
     const yaw3pitch_real_t t99 = parameters[XY2] * (t73 - t67) + t98 - (parameters[MX2R] * t79
         + parameters[MY2] * t77);
+    /* link j3: what it passes on */
     const yaw3pitch_real_t t100 = t99 + (t95 + YAW3PITCH_C(0.8) * (t3 * t96 - t1 * t97));
     input[1] = t100;
     input[2] = t95;
@@ -215,15 +232,17 @@ int yaw3pitch_inverse_dynamics_derivatives(
     const yaw3pitch_real_t t107 = parameters[XX4R] - t106;
     const yaw3pitch_real_t t108 = t11 * t107 - parameters[XZ4] * t16;
     const yaw3pitch_real_t t109 = parameters[YZ4] * t9 + t11 * t106;
+    /* link j4: inertia, momentum beyond */
     const yaw3pitch_real_t t110 = t7 * (t103 + t105) + t5 * (t108 + t109);
     const yaw3pitch_real_t t111 = t7 * t110;
     const yaw3pitch_real_t t112 = parameters[MY4] * t11;
     const yaw3pitch_real_t t113 = parameters[MX4] * t11;
     const yaw3pitch_real_t t114 = t7 * t112 + t5 * t113;
     const yaw3pitch_real_t t115 = YAW3PITCH_C(0.7) * t114;
+    /* link j4: column of the mass matrix */
     const yaw3pitch_real_t t116 = t7 * parameters[MY4] + t5 * parameters[MX4];
-    const yaw3pitch_real_t t117 = YAW3PITCH_C(0.7) * t10;
-    const yaw3pitch_real_t t118 = t116 * t117;
+    const yaw3pitch_real_t t117 = YAW3PITCH_C(0.7) * t10; /* link j4: velocity of its origin */
+    const yaw3pitch_real_t t118 = t116 * t117; /* link j4: inertia, momentum beyond */
     const yaw3pitch_real_t t119 = t118 - t115;
     const yaw3pitch_real_t t120 = parameters[XZ3R] * t44;
     const yaw3pitch_real_t t121 = parameters[XY3] * t10;
@@ -234,21 +253,24 @@ int yaw3pitch_inverse_dynamics_derivatives(
     const yaw3pitch_real_t t126 = YAW3PITCH_C(0.5) * (parameters[XX3R] + parameters[ZZ3R]);
     const yaw3pitch_real_t t127 = t125 - t109 - (parameters[YZ3] * t44 + t10 * t126);
     const yaw3pitch_real_t t128 = t5 * t112 - t7 * t113;
+    /* link j4: column of the mass matrix */
     const yaw3pitch_real_t t129 = t7 * parameters[MX4] - t5 * parameters[MY4];
     const yaw3pitch_real_t t130 = parameters[XX3R] - t126;
+    /* link j4: inertia, momentum beyond */
     const yaw3pitch_real_t t131 = t10 * t130 - parameters[XZ3R] * t27 + (t108 - t125
         + (YAW3PITCH_C(0.7) * t128 - t129 * t117));
+    /* link j3: inertia, momentum beyond */
     const yaw3pitch_real_t t132 = t1 * (t122 - t124) + t3 * (t127 - t131);
     const yaw3pitch_real_t t133 = t1 * t132;
-    const yaw3pitch_real_t t134 = parameters[MY3] * t10 + t114;
+    const yaw3pitch_real_t t134 = parameters[MY3] * t10 + t114; /* link j4: inertia, momentum beyond */
     const yaw3pitch_real_t t135 = t128 - parameters[MX3R] * t10;
-    const yaw3pitch_real_t t136 = t1 * t134 - t3 * t135;
+    const yaw3pitch_real_t t136 = t1 * t134 - t3 * t135; /* link j3: inertia, momentum beyond */
     const yaw3pitch_real_t t137 = YAW3PITCH_C(0.8) * t136;
-    const yaw3pitch_real_t t138 = parameters[MY3] + t116;
+    const yaw3pitch_real_t t138 = parameters[MY3] + t116; /* link j4: inertia of it and all beyond */
     const yaw3pitch_real_t t139 = parameters[MX3R] + t129;
-    const yaw3pitch_real_t t140 = t1 * t138 + t3 * t139;
-    const yaw3pitch_real_t t141 = YAW3PITCH_C(0.8) * dq[1];
-    const yaw3pitch_real_t t142 = t140 * t141;
+    const yaw3pitch_real_t t140 = t1 * t138 + t3 * t139; /* link j3: column of the mass matrix */
+    const yaw3pitch_real_t t141 = YAW3PITCH_C(0.8) * dq[1]; /* link j3: velocity of its origin */
+    const yaw3pitch_real_t t142 = t140 * t141; /* link j3: inertia, momentum beyond */
     const yaw3pitch_real_t t143 = t142 - t137;
     const yaw3pitch_real_t t144 = parameters[XZ2R] * t60;
     const yaw3pitch_real_t t145 = parameters[XY2] * dq[1];
@@ -259,124 +281,150 @@ int yaw3pitch_inverse_dynamics_derivatives(
     const yaw3pitch_real_t t150 = YAW3PITCH_C(0.5) * (parameters[XX2R] + parameters[ZZ2R]);
     const yaw3pitch_real_t t151 = parameters[YZ2] * t60 + dq[1] * t150 + (t149 - t127);
     const yaw3pitch_real_t t152 = t3 * t134 + t1 * t135;
-    const yaw3pitch_real_t t153 = t1 * t139 - t3 * t138;
+    const yaw3pitch_real_t t153 = t1 * t139 - t3 * t138; /* link j3: column of the mass matrix */
     const yaw3pitch_real_t t154 = parameters[XX2R] - t150;
+    /* link j3: inertia, momentum beyond */
     const yaw3pitch_real_t t155 = dq[1] * t154 - parameters[XZ2R] * t31 + (t131 + t149
         + (YAW3PITCH_C(0.8) * t152 - t153 * t141));
+    /* link j2: inertia, momentum beyond */
     const yaw3pitch_real_t t156 = t2 * (t2 * (t148 - t146) + t0 * (t151 + t155));
-    const yaw3pitch_real_t t157 = parameters[MY2] * dq[1] + t136;
+    const yaw3pitch_real_t t157 = parameters[MY2] * dq[1] + t136; /* link j3: inertia, momentum beyond */
     const yaw3pitch_real_t t158 = t152 - parameters[MX2R] * dq[1];
+    /* link j2: inertia, momentum beyond */
     const yaw3pitch_real_t t159 = t146 + t156 + YAW3PITCH_C(0.12) * (t0 * t158 - t2 * t157);
     input_by_dq[0] = YAW3PITCH_C(2.0) * t159;
     const yaw3pitch_real_t t160 = t9 * t107 - parameters[XY4] * t16;
     const yaw3pitch_real_t t161 = t16 * t106 + parameters[XY4] * t9;
     const yaw3pitch_real_t t162 = parameters[MX4] * t9 - parameters[MY4] * t16;
     const yaw3pitch_real_t t163 = YAW3PITCH_C(-0.7) * t44;
+    /* link j4: inertia, momentum beyond */
     const yaw3pitch_real_t t164 = t5 * t161 - t7 * t160 - (YAW3PITCH_C(-0.7) * t162 + t129 * t163);
     const yaw3pitch_real_t t165 = parameters[XY3] * t27 - t44 * t130 + t164;
     const yaw3pitch_real_t t166 = t27 * t126 + parameters[XY3] * t44 + (t5 * t160 + t7 * t161 + t116 * t163);
     const yaw3pitch_real_t t167 = parameters[MX3R] * t44 - parameters[MY3] * t27 + t162;
-    const yaw3pitch_real_t t168 = YAW3PITCH_C(-0.8) * t60;
+    const yaw3pitch_real_t t168 = YAW3PITCH_C(-0.8) * t60; /* link j3: velocity of its origin */
+    /* link j3: inertia, momentum beyond */
     const yaw3pitch_real_t t169 = t1 * t165 + t3 * t166 + (YAW3PITCH_C(0.8) * t167 - t153 * t168);
+    /* link j2: derivatives */
     const yaw3pitch_real_t t170 = YAW3PITCH_C(2.0) * (parameters[XY2] * t31 - t60 * t154 + t169);
+    /* link j3: inertia, momentum beyond */
     const yaw3pitch_real_t t171 = parameters[XY2] * t60 + t31 * t150 - (t3 * t165 - t1 * t166 - t140 * t168);
-    const yaw3pitch_real_t t172 = YAW3PITCH_C(2.0) * t171;
-    const yaw3pitch_real_t t173 = parameters[MY2] + t140;
+    const yaw3pitch_real_t t172 = YAW3PITCH_C(2.0) * t171; /* link j2: derivatives */
+    const yaw3pitch_real_t t173 = parameters[MY2] + t140; /* link j3: inertia of it and all beyond */
     const yaw3pitch_real_t t174 = parameters[MX2R] + t153;
     const yaw3pitch_real_t t175 = YAW3PITCH_C(0.24) * dq[0];
+    /* link j2: derivatives */
     const yaw3pitch_real_t t176 = t0 * t170 - t2 * t172 + (t2 * t173 + t0 * t174) * t175;
     input_by_dq[4] = t176;
-    const yaw3pitch_real_t t177 = YAW3PITCH_C(2.0) * t165;
+    const yaw3pitch_real_t t177 = YAW3PITCH_C(2.0) * t165; /* link j3: derivatives */
     const yaw3pitch_real_t t178 = YAW3PITCH_C(2.0) * t166;
-    const yaw3pitch_real_t t179 = YAW3PITCH_C(-1.6) * t60;
-    const yaw3pitch_real_t t180 = t1 * t177 + t3 * t178 - t153 * t179;
+    const yaw3pitch_real_t t179 = YAW3PITCH_C(-1.6) * t60; /* link j4: derivatives */
+    const yaw3pitch_real_t t180 = t1 * t177 + t3 * t178 - t153 * t179; /* link j3: derivatives */
     const yaw3pitch_real_t t181 = t3 * t177 - t1 * t178 - t140 * t179;
     const yaw3pitch_real_t t182 = t0 * t180 + t2 * t181 + (t2 * t140 + t0 * t153) * t175;
     input_by_dq[8] = t182;
-    const yaw3pitch_real_t t183 = YAW3PITCH_C(2.0) * t160;
+    const yaw3pitch_real_t t183 = YAW3PITCH_C(2.0) * t160; /* link j4: derivatives */
     const yaw3pitch_real_t t184 = YAW3PITCH_C(2.0) * t161;
     const yaw3pitch_real_t t185 = YAW3PITCH_C(-1.4) * t44;
     const yaw3pitch_real_t t186 = t5 * t184 - t7 * t183 - t129 * t185;
     const yaw3pitch_real_t t187 = t5 * t183 + t7 * t184 + t116 * t185;
-    const yaw3pitch_real_t t188 = t1 * t129 - t3 * t116;
-    const yaw3pitch_real_t t189 = t1 * t186 + t3 * t187 - t188 * t179;
-    const yaw3pitch_real_t t190 = t1 * t116 + t3 * t129;
-    const yaw3pitch_real_t t191 = t3 * t186 - t1 * t187 - t190 * t179;
+    const yaw3pitch_real_t t188 = t1 * t129 - t3 * t116; /* link j4: column of the mass matrix */
+    const yaw3pitch_real_t t189 = t1 * t186 + t3 * t187 - t188 * t179; /* link j4: derivatives */
+    const yaw3pitch_real_t t190 = t1 * t116 + t3 * t129; /* link j4: column of the mass matrix */
+    const yaw3pitch_real_t t191 = t3 * t186 - t1 * t187 - t190 * t179; /* link j4: derivatives */
     const yaw3pitch_real_t t192 = t0 * t189 + t2 * t191 + (t2 * t190 + t0 * t188) * t175;
     input_by_dq[12] = t192;
+    /* link j4: inertia of it and all beyond */
     const yaw3pitch_real_t t193 = parameters[XY4] * (YAW3PITCH_C(2.0) * t5) - t7 * parameters[XX4R];
     const yaw3pitch_real_t t194 = t7 * t193;
     const yaw3pitch_real_t t195 = YAW3PITCH_C(1.4) * t129;
     const yaw3pitch_real_t t196 = parameters[XX4R] + t194 + t195;
     const yaw3pitch_real_t t197 = parameters[XX3R] - t194;
     const yaw3pitch_real_t t198 = t5 * t193 - parameters[XY4] + YAW3PITCH_C(0.7) * t116 - parameters[XY3];
+    /* link j3: inertia of it and all beyond */
     const yaw3pitch_real_t t199 = t1 * (t197 - t196) - t198 * (YAW3PITCH_C(-2.0) * t3);
     const yaw3pitch_real_t t200 = t1 * t199;
     const yaw3pitch_real_t t201 = YAW3PITCH_C(1.6) * t153;
     const yaw3pitch_real_t t202 = t197 - t200 + t201;
     const yaw3pitch_real_t t203 = parameters[XX2R] + (t196 + t200);
     const yaw3pitch_real_t t204 = parameters[XY2] + (t3 * t199 - t198 + YAW3PITCH_C(-0.8) * t140);
+    /* link j2: inertia of it and all beyond */
     const yaw3pitch_real_t t205 = t2 * (t2 * (t202 - t203) + t204 * (YAW3PITCH_C(2.0) * t0));
     const yaw3pitch_real_t t206 = t203 + t205 + YAW3PITCH_C(0.24) * (t2 * t174 - t0 * t173);
     input_by_ddq[0] = parameters[ZZ1R] + t206;
+    /* link j4: column of the mass matrix */
     const yaw3pitch_real_t t207 = t5 * parameters[YZ4] - t7 * parameters[XZ4];
-    const yaw3pitch_real_t t208 = t207 - parameters[XZ3R];
+    const yaw3pitch_real_t t208 = t207 - parameters[XZ3R]; /* link j4: inertia of it and all beyond */
+    /* link j4: column of the mass matrix */
     const yaw3pitch_real_t t209 = t5 * parameters[XZ4] + t7 * parameters[YZ4];
-    const yaw3pitch_real_t t210 = parameters[YZ3] + t209;
-    const yaw3pitch_real_t t211 = t1 * t208 + t3 * t210;
-    const yaw3pitch_real_t t212 = parameters[XZ2R] - t211;
-    const yaw3pitch_real_t t213 = t1 * t210 - t3 * t208;
-    const yaw3pitch_real_t t214 = parameters[YZ2] + t213;
-    const yaw3pitch_real_t t215 = t0 * t212 + t2 * t214;
+    const yaw3pitch_real_t t210 = parameters[YZ3] + t209; /* link j4: inertia of it and all beyond */
+    const yaw3pitch_real_t t211 = t1 * t208 + t3 * t210; /* link j3: column of the mass matrix */
+    const yaw3pitch_real_t t212 = parameters[XZ2R] - t211; /* link j3: inertia of it and all beyond */
+    const yaw3pitch_real_t t213 = t1 * t210 - t3 * t208; /* link j3: column of the mass matrix */
+    const yaw3pitch_real_t t214 = parameters[YZ2] + t213; /* link j3: inertia of it and all beyond */
+    const yaw3pitch_real_t t215 = t0 * t212 + t2 * t214; /* link j2: column of the mass matrix */
     input_by_ddq[4] = t215;
-    const yaw3pitch_real_t t216 = t2 * t213 - t0 * t211;
+    const yaw3pitch_real_t t216 = t2 * t213 - t0 * t211; /* link j3: column of the mass matrix */
     input_by_ddq[8] = t216;
-    const yaw3pitch_real_t t217 = t1 * t207 + t3 * t209;
+    const yaw3pitch_real_t t217 = t1 * t207 + t3 * t209; /* link j4: column of the mass matrix */
     const yaw3pitch_real_t t218 = t1 * t209 - t3 * t207;
     const yaw3pitch_real_t t219 = t2 * t218 - t0 * t217;
     input_by_ddq[12] = t219;
     const yaw3pitch_real_t t220 = YAW3PITCH_C(2.0) * t60;
     const yaw3pitch_real_t t221 = YAW3PITCH_C(-2.0) * t31;
-    const yaw3pitch_real_t t222 = t73 + t67;
+    const yaw3pitch_real_t t222 = t73 + t67; /* link j3: motion */
+    /* link j2: derivatives */
     const yaw3pitch_real_t t223 = t220 * t146 + t221 * t151 + (t203 * t33 - t204 * t62 - t212 * t222);
     const yaw3pitch_real_t t224 = t220 * t155 + t221 * t148 + (t204 * t33 - t202 * t62 - t214 * t222);
     const yaw3pitch_real_t t225 = t220 * t158 - t221 * t157 - (t173 * t33 + t174 * t62);
     const yaw3pitch_real_t t226 = t0 * (t74 + t223) + t2 * (t69 + t224) + YAW3PITCH_C(0.12) * t225;
     input_by_q[1] = t226;
+    /* link j4: inertia of it and all beyond */
     const yaw3pitch_real_t t227 = parameters[ZZ3R] + (parameters[ZZ4] + t195);
+    /* link j3: inertia of it and all beyond */
     const yaw3pitch_real_t t228 = parameters[ZZ2R] + (t227 + t201);
+    /* link j2: derivatives */
     const yaw3pitch_real_t t229 = t212 * t33 - t214 * t62 - t228 * t222 + (t60 * t170 + t31 * t172);
     input_by_q[5] = t173 * t79 - t174 * t77 + t229;
-    const yaw3pitch_real_t t230 = t227 + YAW3PITCH_C(0.8) * t153;
+    const yaw3pitch_real_t t230 = t227 + YAW3PITCH_C(0.8) * t153; /* link j3: column of the mass matrix */
+    /* link j3: derivatives */
     const yaw3pitch_real_t t231 = t60 * t180 - t31 * t181 - (t211 * t33 + t213 * t62 + t230 * t222);
     input_by_q[9] = t231 + (t140 * t79 - t153 * t77);
+    /* link j4: column of the mass matrix */
     const yaw3pitch_real_t t232 = parameters[ZZ4] + YAW3PITCH_C(0.7) * t129;
     const yaw3pitch_real_t t233 = t232 + YAW3PITCH_C(0.8) * t188;
+    /* link j4: derivatives */
     const yaw3pitch_real_t t234 = t60 * t189 - t31 * t191 - (t217 * t33 + t218 * t62 + t233 * t222);
     input_by_q[13] = t234 + (t190 * t79 - t188 * t77);
     const yaw3pitch_real_t t235 = parameters[ZZ4] - t106;
     const yaw3pitch_real_t t236 = t9 * t235 - parameters[YZ4] * t11;
     const yaw3pitch_real_t t237 = t16 * t235 - parameters[XZ4] * t11;
     const yaw3pitch_real_t t238 = t126 - parameters[ZZ3R];
+    /* link j4: inertia, momentum beyond */
     const yaw3pitch_real_t t239 = t7 * t236 + t5 * t237 - (parameters[YZ3] * t10 + t44 * t238);
     const yaw3pitch_real_t t240 = parameters[XZ3R] * t10 + t27 * t238 - (t7 * t237 - t5 * t236);
     const yaw3pitch_real_t t241 = parameters[ZZ2R] - t150;
+    /* link j3: inertia, momentum beyond */
     const yaw3pitch_real_t t242 = t60 * t241 - parameters[YZ2] * dq[1] + (t1 * t239 - t3 * t240);
+    /* link j2: derivatives */
     const yaw3pitch_real_t t243 = t0 * (YAW3PITCH_C(2.0) * t242 + (t203 * t220 + t204 * t221));
+    /* link j3: inertia, momentum beyond */
     const yaw3pitch_real_t t244 = parameters[XZ2R] * dq[1] - t31 * t241 + (t3 * t239 + t1 * t240);
+    /* link j2: derivatives */
     const yaw3pitch_real_t t245 = t2 * (YAW3PITCH_C(2.0) * t244 + (t204 * t220 + t202 * t221));
     const yaw3pitch_real_t t246 = t243 + t245 + YAW3PITCH_C(0.12) * (t174 * t221 - t173 * t220);
     input_by_dq[1] = t246;
     const yaw3pitch_real_t t247 = t104 - t101;
-    const yaw3pitch_real_t t248 = t123 - t120 + (t247 + t119);
+    const yaw3pitch_real_t t248 = t123 - t120 + (t247 + t119); /* link j4: inertia, momentum beyond */
+    /* link j2: derivatives */
     const yaw3pitch_real_t t249 = YAW3PITCH_C(2.0) * (t147 - t144 + (t248 + t143))
         + YAW3PITCH_C(2.0) * (t212 * t60 - t214 * t31);
     input_by_dq[5] = t249;
-    const yaw3pitch_real_t t250 = YAW3PITCH_C(2.0) * t248;
+    const yaw3pitch_real_t t250 = YAW3PITCH_C(2.0) * t248; /* link j3: derivatives */
     const yaw3pitch_real_t t251 = YAW3PITCH_C(1.6) * dq[1];
     const yaw3pitch_real_t t252 = t250 + t140 * t251 + YAW3PITCH_C(-2.0) * (t211 * t60 + t213 * t31);
     input_by_dq[9] = t252;
-    const yaw3pitch_real_t t253 = YAW3PITCH_C(2.0) * t247;
+    const yaw3pitch_real_t t253 = YAW3PITCH_C(2.0) * t247; /* link j4: derivatives */
     const yaw3pitch_real_t t254 = t253 + t116 * (YAW3PITCH_C(1.4) * t10);
     const yaw3pitch_real_t t255 = t254 + t190 * t251 + YAW3PITCH_C(-2.0) * (t217 * t60 + t218 * t31);
     input_by_dq[13] = t255;
@@ -386,7 +434,8 @@ int yaw3pitch_inverse_dynamics_derivatives(
     input_by_ddq[13] = t233;
     const yaw3pitch_real_t t256 = YAW3PITCH_C(-2.0) * t44;
     const yaw3pitch_real_t t257 = YAW3PITCH_C(-2.0) * t27;
-    const yaw3pitch_real_t t258 = t58 + t51;
+    const yaw3pitch_real_t t258 = t58 + t51; /* link j4: motion */
+    /* link j3: derivatives */
     const yaw3pitch_real_t t259 = t197 * t29 + t198 * t46 + t208 * t258 - (t256 * t122 + t257 * t127);
     const yaw3pitch_real_t t260 = t59 + t259;
     const yaw3pitch_real_t t261 = t256 * t131 - t257 * t124 + (t198 * t29 + t196 * t46 + t210 * t258);
@@ -402,8 +451,10 @@ int yaw3pitch_inverse_dynamics_derivatives(
     const yaw3pitch_real_t t269 = t268 - (t256 * t165 + t257 * t166 + t267) + YAW3PITCH_C(0.8) * t266;
     input_by_q[6] = t269;
     input_by_q[10] = t268 + (t44 * t177 + t27 * t178 - t267);
+    /* link j4: derivatives */
     const yaw3pitch_real_t t270 = t44 * t186 + t27 * t187 - (t207 * t29 + t209 * t46 + t232 * t258);
     input_by_q[14] = t270 + (t116 * t84 + t129 * t81);
+    /* link j3: derivatives */
     const yaw3pitch_real_t t271 = YAW3PITCH_C(2.0) * t239 - (t197 * t256 + t198 * t257);
     const yaw3pitch_real_t t272 = YAW3PITCH_C(2.0) * t240 + (t198 * t256 + t196 * t257);
     const yaw3pitch_real_t t273 = t138 * t256 + t139 * t257;
@@ -421,7 +472,8 @@ int yaw3pitch_inverse_dynamics_derivatives(
     input_by_ddq[14] = t232;
     const yaw3pitch_real_t t277 = YAW3PITCH_C(-2.0) * t9;
     const yaw3pitch_real_t t278 = YAW3PITCH_C(2.0) * t16;
-    const yaw3pitch_real_t t279 = t42 + t25;
+    const yaw3pitch_real_t t279 = t42 + t25; /* link j4: force and moment */
+    /* link j4: derivatives */
     const yaw3pitch_real_t t280 = t277 * t103 - t278 * t109 + (parameters[XX4R] * t18 - parameters[XY4] * t14
         - parameters[XZ4] * t279);
     const yaw3pitch_real_t t281 = t43 + t280;

@@ -9,14 +9,14 @@
  *
  * Operations: 1215 (645 mul, 570 add, 0 neg), 6 trig.
  *
- * @param[in]   q             [4]   [rad]                  joint coordinates; norm at most 10000
- * @param[in]   dq            [4]   [rad/s]                joint velocities; norm at most 100000
- * @param[in]   ddq           [4]   [rad/s^2]              joint accelerations; norm at most 1e+08
- * @param[in]   parameters    [40]                         standard parameters; norm at most 1e+09
- * @param[out]  input         [4]   [N m]                  inputs: motor currents, efforts where undriven
- * @param[out]  input_by_q    [16]  [(N m) per (rad)]      d input / d q; 4 x 4, row-major
- * @param[out]  input_by_dq   [16]  [(N m) per (rad/s)]    d input / d dq; 4 x 4, row-major
- * @param[out]  input_by_ddq  [16]  [(N m) per (rad/s^2)]  d input / d ddq; 4 x 4, row-major
+ * @param[in]   q             [4]   [rad]                joint coordinates; norm at most 10000
+ * @param[in]   dq            [4]   [rad/s]              joint velocities; norm at most 100000
+ * @param[in]   ddq           [4]   [rad/s^2]            joint accelerations; norm at most 1e+08
+ * @param[in]   parameters    [40]                       standard parameters; norm at most 1e+09
+ * @param[out]  input         [4]   [N m]                inputs: motor currents, efforts where undriven
+ * @param[out]  input_by_q    [16]  [N m per rad]        d input / d q; 4 x 4, row-major
+ * @param[out]  input_by_dq   [16]  [N m per (rad/s)]    d input / d dq; 4 x 4, row-major
+ * @param[out]  input_by_ddq  [16]  [N m per (rad/s^2)]  d input / d ddq; 4 x 4, row-major
  *
  * Coordinates:
  *
@@ -70,11 +70,11 @@
  */
 #include "yaw3pitch_private.h"
 
-#if YAW3PITCH_GENERATION != 0x7BB9A1E4UL
+#if YAW3PITCH_GENERATION != 0x14CEE2C4UL
 #error "yaw3pitch.h and yaw3pitch_inverse_dynamics_derivatives_standard.c are of different generations: generate the arm again"
 #endif
 
-int yaw3pitch_inverse_dynamics_derivatives_standard(
+yaw3pitch_status_t yaw3pitch_inverse_dynamics_derivatives_standard(
     const yaw3pitch_real_t q[YAW3PITCH_N_JOINTS],
     const yaw3pitch_real_t dq[YAW3PITCH_N_JOINTS],
     const yaw3pitch_real_t ddq[YAW3PITCH_N_JOINTS],
@@ -87,7 +87,7 @@ int yaw3pitch_inverse_dynamics_derivatives_standard(
     enum { XX1 = 0, XY1, XZ1, YY1, YZ1, ZZ1, MX1, MY1, MZ1, M1, XX2, XY2, XZ2, YY2, YZ2, ZZ2, MX2, MY2, MZ2,
         M2, XX3, XY3, XZ3, YY3, YZ3, ZZ3, MX3, MY3, MZ3, M3, XX4, XY4, XZ4, YY4, YZ4, ZZ4, MX4, MY4, MZ4, M4
         };
-    int status = YAW3PITCH_STATUS_OK;
+    yaw3pitch_status_t status = YAW3PITCH_STATUS_OK;
 
     if (!yaw3pitch_within_joints(q, YAW3PITCH_C(1.0e8))
         || !yaw3pitch_within_joints(dq, YAW3PITCH_C(1.0e10))
@@ -109,145 +109,167 @@ int yaw3pitch_inverse_dynamics_derivatives_standard(
     YAW3PITCH_SINCOS(q[2], &t3, &t1);
     yaw3pitch_real_t t7, t5;
     YAW3PITCH_SINCOS(q[3], &t7, &t5);
-    const yaw3pitch_real_t t4 = t0 * t1 + t2 * t3;
+    const yaw3pitch_real_t t4 = t0 * t1 + t2 * t3; /* link j3: motion */
     const yaw3pitch_real_t t6 = t2 * t1 - t0 * t3;
-    const yaw3pitch_real_t t8 = t5 * t4 + t7 * t6;
+    const yaw3pitch_real_t t8 = t5 * t4 + t7 * t6; /* link j4: motion */
     const yaw3pitch_real_t t9 = ddq[0] * t8;
     const yaw3pitch_real_t t10 = t7 * t4 - t5 * t6;
     const yaw3pitch_real_t t11 = dq[0] * t10;
-    const yaw3pitch_real_t t12 = dq[1] + dq[2];
-    const yaw3pitch_real_t t13 = dq[3] + t12;
+    const yaw3pitch_real_t t12 = dq[1] + dq[2]; /* link j3: motion */
+    const yaw3pitch_real_t t13 = dq[3] + t12; /* link j4: motion */
     const yaw3pitch_real_t t14 = t11 * t13;
     const yaw3pitch_real_t t15 = t14 - t9;
     const yaw3pitch_real_t t16 = ddq[0] * t10;
     const yaw3pitch_real_t t17 = dq[0] * t8;
     const yaw3pitch_real_t t18 = t17 * t13;
     const yaw3pitch_real_t t19 = t16 + t18;
-    const yaw3pitch_real_t t20 = t18 + t19;
+    const yaw3pitch_real_t t20 = t18 + t19; /* link j4: columns */
+    /* link j4: force and moment */
     const yaw3pitch_real_t t21 = t14 * (parameters[ZZ4] - parameters[YY4]) + t15 * parameters[XX4]
         + t20 * parameters[XY4];
-    const yaw3pitch_real_t t22 = t17 * t11;
-    const yaw3pitch_real_t t23 = ddq[1] + ddq[2];
-    const yaw3pitch_real_t t24 = ddq[3] + t23;
-    const yaw3pitch_real_t t25 = t22 - t24;
-    const yaw3pitch_real_t t26 = t11 * t11;
+    const yaw3pitch_real_t t22 = t17 * t11; /* link j4: motion */
+    const yaw3pitch_real_t t23 = ddq[1] + ddq[2]; /* link j3: motion */
+    const yaw3pitch_real_t t24 = ddq[3] + t23; /* link j4: motion */
+    const yaw3pitch_real_t t25 = t22 - t24; /* link j4: columns */
+    const yaw3pitch_real_t t26 = t11 * t11; /* link j4: motion */
     const yaw3pitch_real_t t27 = t13 * t13;
-    const yaw3pitch_real_t t28 = YAW3PITCH_C(-0.12) * (dq[0] * dq[0]);
+    const yaw3pitch_real_t t28 = YAW3PITCH_C(-0.12) * (dq[0] * dq[0]); /* link j2: motion */
     const yaw3pitch_real_t t29 = t2 * t28 + YAW3PITCH_C(9.81) * t0;
     const yaw3pitch_real_t t30 = t2 * dq[0];
     const yaw3pitch_real_t t31 = t30 * t30;
     const yaw3pitch_real_t t32 = dq[1] * dq[1];
-    const yaw3pitch_real_t t33 = YAW3PITCH_C(0.8) * (t31 + t32) - t29;
-    const yaw3pitch_real_t t34 = t0 * t28 + YAW3PITCH_C(-9.81) * t2;
+    const yaw3pitch_real_t t33 = YAW3PITCH_C(0.8) * (t31 + t32) - t29; /* link j3: motion */
+    const yaw3pitch_real_t t34 = t0 * t28 + YAW3PITCH_C(-9.81) * t2; /* link j2: motion */
     const yaw3pitch_real_t t35 = t0 * dq[0];
     const yaw3pitch_real_t t36 = t35 * t30;
-    const yaw3pitch_real_t t37 = ddq[1] + t36;
+    const yaw3pitch_real_t t37 = ddq[1] + t36; /* link j3: motion */
     const yaw3pitch_real_t t38 = t34 + YAW3PITCH_C(-0.8) * t37;
     const yaw3pitch_real_t t39 = t1 * t33 + t3 * t38;
     const yaw3pitch_real_t t40 = dq[0] * t6;
     const yaw3pitch_real_t t41 = t40 * t40;
     const yaw3pitch_real_t t42 = t12 * t12;
-    const yaw3pitch_real_t t43 = t41 + t42;
+    const yaw3pitch_real_t t43 = t41 + t42; /* link j4: motion */
     const yaw3pitch_real_t t44 = t39 + YAW3PITCH_C(0.7) * t43;
-    const yaw3pitch_real_t t45 = t1 * t38 - t3 * t33;
+    const yaw3pitch_real_t t45 = t1 * t38 - t3 * t33; /* link j3: motion */
     const yaw3pitch_real_t t46 = dq[0] * t4;
     const yaw3pitch_real_t t47 = t46 * t40;
-    const yaw3pitch_real_t t48 = t23 + t47;
+    const yaw3pitch_real_t t48 = t23 + t47; /* link j4: motion */
     const yaw3pitch_real_t t49 = t45 + YAW3PITCH_C(-0.7) * t48;
     const yaw3pitch_real_t t50 = t7 * t44 - t5 * t49;
-    const yaw3pitch_real_t t51 = t50 * parameters[MZ4];
-    const yaw3pitch_real_t t52 = ddq[0] * t6;
+    const yaw3pitch_real_t t51 = t50 * parameters[MZ4]; /* link j4: force and moment */
+    const yaw3pitch_real_t t52 = ddq[0] * t6; /* link j3: motion */
     const yaw3pitch_real_t t53 = t46 * t12;
     const yaw3pitch_real_t t54 = t52 - t53;
-    const yaw3pitch_real_t t55 = t54 - t53;
-    const yaw3pitch_real_t t56 = t2 * ddq[0];
+    const yaw3pitch_real_t t55 = t54 - t53; /* link j4: motion */
+    const yaw3pitch_real_t t56 = t2 * ddq[0]; /* link j2: motion */
     const yaw3pitch_real_t t57 = dq[1] * t35;
     const yaw3pitch_real_t t58 = t56 - t57;
-    const yaw3pitch_real_t t59 = t58 - t57;
-    const yaw3pitch_real_t t60 = YAW3PITCH_C(0.12) * ddq[0];
-    const yaw3pitch_real_t t61 = t60 + YAW3PITCH_C(0.8) * t59;
-    const yaw3pitch_real_t t62 = t61 + YAW3PITCH_C(0.7) * t55;
+    const yaw3pitch_real_t t59 = t58 - t57; /* link j3: motion */
+    const yaw3pitch_real_t t60 = YAW3PITCH_C(0.12) * ddq[0]; /* link j2: motion */
+    const yaw3pitch_real_t t61 = t60 + YAW3PITCH_C(0.8) * t59; /* link j3: motion */
+    const yaw3pitch_real_t t62 = t61 + YAW3PITCH_C(0.7) * t55; /* link j4: motion */
+    /* link j4: force and moment */
     const yaw3pitch_real_t t63 = (t27 - t26) * parameters[YZ4] + (t21 + t25 * parameters[XZ4])
         + (t62 * parameters[MY4] + t51);
-    const yaw3pitch_real_t t64 = t14 + t15;
+    const yaw3pitch_real_t t64 = t14 + t15; /* link j4: columns */
+    /* link j4: force and moment */
     const yaw3pitch_real_t t65 = t18 * (parameters[ZZ4] - parameters[XX4]) + t19 * parameters[YY4]
         + t64 * parameters[XY4];
-    const yaw3pitch_real_t t66 = t24 + t22;
-    const yaw3pitch_real_t t67 = t17 * t17;
+    const yaw3pitch_real_t t66 = t24 + t22; /* link j4: columns */
+    const yaw3pitch_real_t t67 = t17 * t17; /* link j4: motion */
     const yaw3pitch_real_t t68 = t5 * t44 + t7 * t49;
-    const yaw3pitch_real_t t69 = t68 * parameters[MZ4];
+    const yaw3pitch_real_t t69 = t68 * parameters[MZ4]; /* link j4: force and moment */
     const yaw3pitch_real_t t70 = (t67 - t27) * parameters[XZ4] + (t65 - t66 * parameters[YZ4]) + (t69
         - t62 * parameters[MX4]);
-    const yaw3pitch_real_t t71 = ddq[0] * t4;
+    const yaw3pitch_real_t t71 = ddq[0] * t4; /* link j3: motion */
     const yaw3pitch_real_t t72 = t40 * t12;
     const yaw3pitch_real_t t73 = t71 + t72;
+    /* link j3: force and moment */
     const yaw3pitch_real_t t74 = t73 * parameters[XX3] - t72 * (parameters[YY3] - parameters[ZZ3])
         + t55 * parameters[XY3];
     const yaw3pitch_real_t t75 = t61 * parameters[MY3] - t45 * parameters[MZ3] - ((t41
         - t42) * parameters[YZ3] + (t74 + t48 * parameters[XZ3]));
-    const yaw3pitch_real_t t76 = t75 - (t7 * t70 - t5 * t63);
-    const yaw3pitch_real_t t77 = t67 + t26;
+    const yaw3pitch_real_t t76 = t75 - (t7 * t70 - t5 * t63); /* link j4: what it passes on */
+    const yaw3pitch_real_t t77 = t67 + t26; /* link j4: columns */
+    /* link j4: force and moment */
     const yaw3pitch_real_t t78 = t62 * parameters[M4] + (t77 * parameters[MZ4] + (t64 * parameters[MY4]
         - t20 * parameters[MX4]));
-    const yaw3pitch_real_t t79 = t72 + t73;
+    const yaw3pitch_real_t t79 = t72 + t73; /* link j4: motion */
+    /* link j3: force and moment */
     const yaw3pitch_real_t t80 = t53 * (parameters[ZZ3] - parameters[XX3]) - t54 * parameters[YY3]
         - t79 * parameters[XY3];
-    const yaw3pitch_real_t t81 = t47 - t23;
-    const yaw3pitch_real_t t82 = t46 * t46;
+    const yaw3pitch_real_t t81 = t47 - t23; /* link j4: motion */
+    const yaw3pitch_real_t t82 = t46 * t46; /* link j3: motion */
+    /* link j3: force and moment */
     const yaw3pitch_real_t t83 = t39 * parameters[MZ3] - t61 * parameters[MX3] + ((t82
         - t42) * parameters[XZ3] + (t80 + t81 * parameters[YZ3]));
+    /* link j4: what it passes on */
     const yaw3pitch_real_t t84 = t83 + (t7 * t63 + t5 * t70 + YAW3PITCH_C(-0.7) * t78);
-    const yaw3pitch_real_t t85 = dq[1] * t30;
+    const yaw3pitch_real_t t85 = dq[1] * t30; /* link j2: motion */
     const yaw3pitch_real_t t86 = t0 * ddq[0];
     const yaw3pitch_real_t t87 = t86 + t85;
+    /* link j2: force and moment */
     const yaw3pitch_real_t t88 = t85 * (parameters[ZZ2] - parameters[YY2]) + t87 * parameters[XX2]
         + t59 * parameters[XY2];
     const yaw3pitch_real_t t89 = (t31 - t32) * parameters[YZ2] + (t88 + t37 * parameters[XZ2])
         + (t34 * parameters[MZ2] - t60 * parameters[MY2]);
-    const yaw3pitch_real_t t90 = t89 + (t3 * t84 - t1 * t76);
-    const yaw3pitch_real_t t91 = t82 + t41;
+    const yaw3pitch_real_t t90 = t89 + (t3 * t84 - t1 * t76); /* link j3: what it passes on */
+    const yaw3pitch_real_t t91 = t82 + t41; /* link j4: motion */
+    /* link j3: force and moment */
     const yaw3pitch_real_t t92 = t61 * parameters[M3] + (t91 * parameters[MZ3] + (t55 * parameters[MX3]
         - t79 * parameters[MY3]));
-    const yaw3pitch_real_t t93 = t92 + t78;
-    const yaw3pitch_real_t t94 = t85 + t87;
+    const yaw3pitch_real_t t93 = t92 + t78; /* link j4: what it passes on */
+    const yaw3pitch_real_t t94 = t85 + t87; /* link j3: motion */
+    /* link j2: force and moment */
     const yaw3pitch_real_t t95 = t57 * (parameters[ZZ2] - parameters[XX2]) - t58 * parameters[YY2]
         - t94 * parameters[XY2];
-    const yaw3pitch_real_t t96 = t35 * t35;
+    const yaw3pitch_real_t t96 = t35 * t35; /* link j2: motion */
+    /* link j2: force and moment */
     const yaw3pitch_real_t t97 = (t96 - t32) * parameters[XZ2] + (t95 + (t36 - ddq[1]) * parameters[YZ2]);
+    /* link j3: what it passes on */
     const yaw3pitch_real_t t98 = t97 - (t29 * parameters[MZ2] + t60 * parameters[MX2]) + (t3 * t76 + t1 * t84
         + YAW3PITCH_C(-0.8) * t93);
-    const yaw3pitch_real_t t99 = t96 + t31;
+    const yaw3pitch_real_t t99 = t96 + t31; /* link j3: motion */
+    /* link j2: force and moment */
     const yaw3pitch_real_t t100 = t60 * parameters[M2] + (t99 * parameters[MZ2] + (t59 * parameters[MX2]
         - t94 * parameters[MY2]));
+    /* link j2: what it passes on */
     const yaw3pitch_real_t t101 = t0 * t90 - t2 * t98 + YAW3PITCH_C(0.12) * (t100 + t93);
     input[0] = ddq[0] * parameters[ZZ1] + t101;
-    const yaw3pitch_real_t t102 = t68 * parameters[M4];
+    const yaw3pitch_real_t t102 = t68 * parameters[M4]; /* link j4: force and moment */
     const yaw3pitch_real_t t103 = t16 * parameters[MZ4];
     const yaw3pitch_real_t t104 = t102 + ((t26 + t27) * parameters[MX4] + t66 * parameters[MY4] + t103);
     const yaw3pitch_real_t t105 = t50 * parameters[M4];
     const yaw3pitch_real_t t106 = t9 * parameters[MZ4];
     const yaw3pitch_real_t t107 = (t67 + t27) * parameters[MY4] + t25 * parameters[MX4] + t106 - t105;
+    /* link j3: force and moment */
     const yaw3pitch_real_t t108 = t81 * parameters[MY3] - t43 * parameters[MX3] + t52 * parameters[MZ3]
         - t39 * parameters[M3];
-    const yaw3pitch_real_t t109 = t108 + (t7 * t107 - t5 * t104);
+    const yaw3pitch_real_t t109 = t108 + (t7 * t107 - t5 * t104); /* link j4: what it passes on */
     const yaw3pitch_real_t t110 = t7 * t104 + t5 * t107;
+    /* link j3: force and moment */
     const yaw3pitch_real_t t111 = (t82 + t42) * parameters[MY3] - t48 * parameters[MX3]
         + t71 * parameters[MZ3];
-    const yaw3pitch_real_t t112 = t45 * parameters[M3] + t111 + t110;
+    const yaw3pitch_real_t t112 = t45 * parameters[M3] + t111 + t110; /* link j4: what it passes on */
+    /* link j4: inertia of it and all beyond */
     const yaw3pitch_real_t t113 = parameters[XX4] - parameters[YY4];
+    /* link j4: force and moment */
     const yaw3pitch_real_t t114 = t22 * t113 + t24 * parameters[ZZ4] - t16 * parameters[YZ4]
         + t9 * parameters[XZ4];
     const yaw3pitch_real_t t115 = (t67 - t26) * parameters[XY4] + t114 + (t50 * parameters[MX4]
         + t68 * parameters[MY4]);
+    /* link j3: force and moment */
     const yaw3pitch_real_t t116 = t23 * parameters[ZZ3] - t47 * (parameters[XX3] - parameters[YY3])
         + t52 * parameters[YZ3];
     const yaw3pitch_real_t t117 = t39 * parameters[MY3] - t45 * parameters[MX3] + ((t82
         - t41) * parameters[XY3] + (t116 + t71 * parameters[XZ3]));
-    const yaw3pitch_real_t t118 = t117 + (t115 + YAW3PITCH_C(-0.7) * t110);
+    const yaw3pitch_real_t t118 = t117 + (t115 + YAW3PITCH_C(-0.7) * t110); /* link j4: what it passes on */
+    /* link j2: force and moment */
     const yaw3pitch_real_t t119 = t36 * (parameters[YY2] - parameters[XX2]) + ddq[1] * parameters[ZZ2]
         + t56 * parameters[YZ2];
     const yaw3pitch_real_t t120 = (t96 - t31) * parameters[XY2] + (t119 + t86 * parameters[XZ2])
         - (t34 * parameters[MX2] + t29 * parameters[MY2]);
+    /* link j3: what it passes on */
     const yaw3pitch_real_t t121 = t120 + (t118 + YAW3PITCH_C(0.8) * (t3 * t109 - t1 * t112));
     input[1] = t121;
     input[2] = t118;
@@ -262,15 +284,17 @@ int yaw3pitch_inverse_dynamics_derivatives_standard(
     const yaw3pitch_real_t t129 = t13 * t128 - t17 * parameters[XZ4];
     const yaw3pitch_real_t t130 = parameters[YY4] - t127;
     const yaw3pitch_real_t t131 = t11 * parameters[YZ4] + t13 * t130;
+    /* link j4: inertia, momentum beyond */
     const yaw3pitch_real_t t132 = t5 * (t124 + t126) + t7 * (t129 - t131);
     const yaw3pitch_real_t t133 = t5 * t132;
     const yaw3pitch_real_t t134 = t11 * parameters[MZ4] + t13 * parameters[MY4];
     const yaw3pitch_real_t t135 = t13 * parameters[MX4] - t17 * parameters[MZ4];
     const yaw3pitch_real_t t136 = t5 * t134 + t7 * t135;
     const yaw3pitch_real_t t137 = YAW3PITCH_C(0.7) * t136;
+    /* link j4: column of the mass matrix */
     const yaw3pitch_real_t t138 = t5 * parameters[MY4] + t7 * parameters[MX4];
-    const yaw3pitch_real_t t139 = YAW3PITCH_C(0.7) * t12;
-    const yaw3pitch_real_t t140 = t138 * t139;
+    const yaw3pitch_real_t t139 = YAW3PITCH_C(0.7) * t12; /* link j4: velocity of its origin */
+    const yaw3pitch_real_t t140 = t138 * t139; /* link j4: inertia, momentum beyond */
     const yaw3pitch_real_t t141 = YAW3PITCH_C(-0.7) * t40;
     const yaw3pitch_real_t t142 = parameters[MZ4] * t141;
     const yaw3pitch_real_t t143 = t140 + t142 - t137;
@@ -284,27 +308,33 @@ int yaw3pitch_inverse_dynamics_derivatives_standard(
     const yaw3pitch_real_t t151 = parameters[YY3] - t150;
     const yaw3pitch_real_t t152 = t12 * t151 - t40 * parameters[YZ3] + (t131 + t149);
     const yaw3pitch_real_t t153 = t7 * t134 - t5 * t135;
+    /* link j4: column of the mass matrix */
     const yaw3pitch_real_t t154 = t5 * parameters[MX4] - t7 * parameters[MY4];
+    /* link j4: inertia of it and all beyond */
     const yaw3pitch_real_t t155 = YAW3PITCH_C(0.7) * parameters[M4];
     const yaw3pitch_real_t t156 = t154 + t155;
     const yaw3pitch_real_t t157 = parameters[XX3] - t150;
+    /* link j4: inertia, momentum beyond */
     const yaw3pitch_real_t t158 = t12 * t157 - t46 * parameters[XZ3] + (t129 - t149 + (YAW3PITCH_C(0.7) * t153
         - t156 * t139));
+    /* link j3: inertia, momentum beyond */
     const yaw3pitch_real_t t159 = t1 * (t146 - t148) + t3 * (t152 - t158);
     const yaw3pitch_real_t t160 = t1 * t159;
+    /* link j4: inertia, momentum beyond */
     const yaw3pitch_real_t t161 = t12 * parameters[MY3] - t40 * parameters[MZ3] + t136;
     const yaw3pitch_real_t t162 = t46 * parameters[MZ3] - t12 * parameters[MX3] + (t153
         - parameters[M4] * t139);
-    const yaw3pitch_real_t t163 = t1 * t161 - t3 * t162;
+    const yaw3pitch_real_t t163 = t1 * t161 - t3 * t162; /* link j3: inertia, momentum beyond */
     const yaw3pitch_real_t t164 = YAW3PITCH_C(0.8) * t163;
-    const yaw3pitch_real_t t165 = parameters[MY3] + t138;
+    const yaw3pitch_real_t t165 = parameters[MY3] + t138; /* link j4: inertia of it and all beyond */
     const yaw3pitch_real_t t166 = parameters[MX3] + t156;
-    const yaw3pitch_real_t t167 = t1 * t165 + t3 * t166;
-    const yaw3pitch_real_t t168 = YAW3PITCH_C(-0.8) * dq[1];
-    const yaw3pitch_real_t t169 = t167 * t168;
+    const yaw3pitch_real_t t167 = t1 * t165 + t3 * t166; /* link j3: column of the mass matrix */
+    const yaw3pitch_real_t t168 = YAW3PITCH_C(-0.8) * dq[1]; /* link j3: velocity of its origin */
+    const yaw3pitch_real_t t169 = t167 * t168; /* link j3: inertia, momentum beyond */
+    /* link j4: inertia of it and all beyond */
     const yaw3pitch_real_t t170 = parameters[MZ3] + parameters[MZ4];
-    const yaw3pitch_real_t t171 = YAW3PITCH_C(-0.8) * t30;
-    const yaw3pitch_real_t t172 = t170 * t171;
+    const yaw3pitch_real_t t171 = YAW3PITCH_C(-0.8) * t30; /* link j3: velocity of its origin */
+    const yaw3pitch_real_t t172 = t170 * t171; /* link j3: inertia, momentum beyond */
     const yaw3pitch_real_t t173 = t172 - t169 - t164;
     const yaw3pitch_real_t t174 = t30 * parameters[XZ2];
     const yaw3pitch_real_t t175 = dq[1] * parameters[XY2];
@@ -316,131 +346,160 @@ int yaw3pitch_inverse_dynamics_derivatives_standard(
     const yaw3pitch_real_t t181 = t180 - parameters[YY2];
     const yaw3pitch_real_t t182 = t30 * parameters[YZ2] + dq[1] * t181 + (t179 - t152);
     const yaw3pitch_real_t t183 = t3 * t161 + t1 * t162;
-    const yaw3pitch_real_t t184 = t1 * t166 - t3 * t165;
-    const yaw3pitch_real_t t185 = parameters[M3] + parameters[M4];
-    const yaw3pitch_real_t t186 = YAW3PITCH_C(0.8) * t185;
+    const yaw3pitch_real_t t184 = t1 * t166 - t3 * t165; /* link j3: column of the mass matrix */
+    const yaw3pitch_real_t t185 = parameters[M3] + parameters[M4]; /* link j4: inertia of it and all beyond */
+    const yaw3pitch_real_t t186 = YAW3PITCH_C(0.8) * t185; /* link j3: inertia of it and all beyond */
     const yaw3pitch_real_t t187 = t184 + t186;
     const yaw3pitch_real_t t188 = parameters[XX2] - t180;
+    /* link j3: inertia, momentum beyond */
     const yaw3pitch_real_t t189 = dq[1] * t188 - t35 * parameters[XZ2] + (t158 + t179
         + (YAW3PITCH_C(0.8) * t183 + t187 * t168));
+    /* link j2: inertia, momentum beyond */
     const yaw3pitch_real_t t190 = t2 * (t2 * (t178 - t176) + t0 * (t182 + t189));
+    /* link j3: inertia, momentum beyond */
     const yaw3pitch_real_t t191 = t30 * parameters[MZ2] - dq[1] * parameters[MY2] - t163;
     const yaw3pitch_real_t t192 = t35 * parameters[MZ2] - dq[1] * parameters[MX2] + (t183 + t185 * t168);
-    const yaw3pitch_real_t t193 = parameters[MZ2] + t170;
+    const yaw3pitch_real_t t193 = parameters[MZ2] + t170; /* link j3: inertia of it and all beyond */
+    /* link j2: inertia, momentum beyond */
     const yaw3pitch_real_t t194 = YAW3PITCH_C(0.12) * (t2 * t191 + t0 * t192)
         + t193 * (YAW3PITCH_C(-0.12) * dq[0]);
     input_by_dq[0] = YAW3PITCH_C(2.0) * (t176 + t190 + t194);
     const yaw3pitch_real_t t195 = t17 * parameters[XY4] + t11 * t128;
     const yaw3pitch_real_t t196 = t17 * t130 + t11 * parameters[XY4];
     const yaw3pitch_real_t t197 = t17 * parameters[MY4] + t11 * parameters[MX4];
+    /* link j4: inertia, momentum beyond */
     const yaw3pitch_real_t t198 = t5 * t195 - t7 * t196 - (YAW3PITCH_C(0.7) * t197 + t156 * t141);
     const yaw3pitch_real_t t199 = t46 * parameters[XY3] - t40 * t157 + t198;
     const yaw3pitch_real_t t200 = t40 * parameters[XY3] - t46 * t151 + (t138 * t141 - (t7 * t195
         + t5 * t196));
     const yaw3pitch_real_t t201 = t40 * parameters[MX3] - t46 * parameters[MY3] - (t197
         + parameters[M4] * t141);
+    /* link j3: inertia, momentum beyond */
     const yaw3pitch_real_t t202 = t1 * t199 + t3 * t200 + (YAW3PITCH_C(0.8) * t201 - t187 * t171);
+    /* link j2: derivatives */
     const yaw3pitch_real_t t203 = YAW3PITCH_C(2.0) * (t35 * parameters[XY2] - t30 * t188 + t202);
+    /* link j3: inertia, momentum beyond */
     const yaw3pitch_real_t t204 = t30 * parameters[XY2] + t35 * t181 - (t3 * t199 - t1 * t200 - t167 * t171);
-    const yaw3pitch_real_t t205 = YAW3PITCH_C(2.0) * t204;
-    const yaw3pitch_real_t t206 = parameters[MY2] + t167;
+    const yaw3pitch_real_t t205 = YAW3PITCH_C(2.0) * t204; /* link j2: derivatives */
+    const yaw3pitch_real_t t206 = parameters[MY2] + t167; /* link j3: inertia of it and all beyond */
     const yaw3pitch_real_t t207 = parameters[MX2] + t187;
     const yaw3pitch_real_t t208 = YAW3PITCH_C(0.24) * dq[0];
+    /* link j2: derivatives */
     const yaw3pitch_real_t t209 = t0 * t203 - t2 * t205 + (t2 * t206 + t0 * t207) * t208;
     input_by_dq[4] = t209;
-    const yaw3pitch_real_t t210 = YAW3PITCH_C(2.0) * t199;
+    const yaw3pitch_real_t t210 = YAW3PITCH_C(2.0) * t199; /* link j3: derivatives */
     const yaw3pitch_real_t t211 = YAW3PITCH_C(2.0) * t200;
-    const yaw3pitch_real_t t212 = YAW3PITCH_C(-1.6) * t30;
-    const yaw3pitch_real_t t213 = t1 * t210 + t3 * t211 - t184 * t212;
+    const yaw3pitch_real_t t212 = YAW3PITCH_C(-1.6) * t30; /* link j4: derivatives */
+    const yaw3pitch_real_t t213 = t1 * t210 + t3 * t211 - t184 * t212; /* link j3: derivatives */
     const yaw3pitch_real_t t214 = t3 * t210 - t1 * t211 - t167 * t212;
     const yaw3pitch_real_t t215 = t0 * t213 + t2 * t214 + (t2 * t167 + t0 * t184) * t208;
     input_by_dq[8] = t215;
-    const yaw3pitch_real_t t216 = YAW3PITCH_C(-2.0) * t195;
+    const yaw3pitch_real_t t216 = YAW3PITCH_C(-2.0) * t195; /* link j4: derivatives */
     const yaw3pitch_real_t t217 = YAW3PITCH_C(-2.0) * t196;
     const yaw3pitch_real_t t218 = YAW3PITCH_C(-1.4) * t40;
     const yaw3pitch_real_t t219 = t7 * t217 - t5 * t216 - t154 * t218;
     const yaw3pitch_real_t t220 = t7 * t216 + t5 * t217 + t138 * t218;
-    const yaw3pitch_real_t t221 = t1 * t154 - t3 * t138;
-    const yaw3pitch_real_t t222 = t1 * t219 + t3 * t220 - t221 * t212;
-    const yaw3pitch_real_t t223 = t1 * t138 + t3 * t154;
-    const yaw3pitch_real_t t224 = t3 * t219 - t1 * t220 - t223 * t212;
+    const yaw3pitch_real_t t221 = t1 * t154 - t3 * t138; /* link j4: column of the mass matrix */
+    const yaw3pitch_real_t t222 = t1 * t219 + t3 * t220 - t221 * t212; /* link j4: derivatives */
+    const yaw3pitch_real_t t223 = t1 * t138 + t3 * t154; /* link j4: column of the mass matrix */
+    const yaw3pitch_real_t t224 = t3 * t219 - t1 * t220 - t223 * t212; /* link j4: derivatives */
     const yaw3pitch_real_t t225 = t0 * t222 + t2 * t224 + (t2 * t223 + t0 * t221) * t208;
     input_by_dq[12] = t225;
+    /* link j4: inertia of it and all beyond */
     const yaw3pitch_real_t t226 = parameters[XY4] * (YAW3PITCH_C(2.0) * t7) - t5 * t113;
     const yaw3pitch_real_t t227 = t5 * t226;
     const yaw3pitch_real_t t228 = YAW3PITCH_C(0.7) * (t155 + YAW3PITCH_C(2.0) * t154);
     const yaw3pitch_real_t t229 = parameters[YY3] + (parameters[XX4] + t227 + t228);
     const yaw3pitch_real_t t230 = parameters[XX3] + (parameters[YY4] - t227);
     const yaw3pitch_real_t t231 = t7 * t226 - parameters[XY4] + YAW3PITCH_C(0.7) * t138 - parameters[XY3];
+    /* link j3: inertia of it and all beyond */
     const yaw3pitch_real_t t232 = t1 * (t230 - t229) - t231 * (YAW3PITCH_C(-2.0) * t3);
     const yaw3pitch_real_t t233 = t1 * t232;
     const yaw3pitch_real_t t234 = parameters[XX2] + (t229 + t233);
     const yaw3pitch_real_t t235 = YAW3PITCH_C(0.8) * (t186 + YAW3PITCH_C(2.0) * t184);
     const yaw3pitch_real_t t236 = parameters[YY2] + (t230 - t233 + t235);
     const yaw3pitch_real_t t237 = parameters[XY2] + (t3 * t232 - t231 + YAW3PITCH_C(-0.8) * t167);
+    /* link j2: inertia of it and all beyond */
     const yaw3pitch_real_t t238 = t2 * (t2 * (t236 - t234) + t237 * (YAW3PITCH_C(2.0) * t0));
     const yaw3pitch_real_t t239 = YAW3PITCH_C(0.12) * (parameters[M2] + t185) + YAW3PITCH_C(2.0) * (t2 * t207
         - t0 * t206);
     input_by_ddq[0] = parameters[ZZ1] + (t234 + t238 + YAW3PITCH_C(0.12) * t239);
+    /* link j4: column of the mass matrix */
     const yaw3pitch_real_t t240 = t7 * parameters[YZ4] - t5 * parameters[XZ4];
+    /* link j4: inertia of it and all beyond */
     const yaw3pitch_real_t t241 = t240 + YAW3PITCH_C(0.7) * parameters[MZ4] - parameters[XZ3];
+    /* link j4: column of the mass matrix */
     const yaw3pitch_real_t t242 = t7 * parameters[XZ4] + t5 * parameters[YZ4];
-    const yaw3pitch_real_t t243 = parameters[YZ3] + t242;
-    const yaw3pitch_real_t t244 = t1 * t241 + t3 * t243;
+    const yaw3pitch_real_t t243 = parameters[YZ3] + t242; /* link j4: inertia of it and all beyond */
+    const yaw3pitch_real_t t244 = t1 * t241 + t3 * t243; /* link j3: column of the mass matrix */
+    /* link j3: inertia of it and all beyond */
     const yaw3pitch_real_t t245 = parameters[XZ2] + (YAW3PITCH_C(-0.8) * t170 - t244);
-    const yaw3pitch_real_t t246 = t1 * t243 - t3 * t241;
-    const yaw3pitch_real_t t247 = parameters[YZ2] + t246;
-    const yaw3pitch_real_t t248 = t0 * t245 + t2 * t247;
+    const yaw3pitch_real_t t246 = t1 * t243 - t3 * t241; /* link j3: column of the mass matrix */
+    const yaw3pitch_real_t t247 = parameters[YZ2] + t246; /* link j3: inertia of it and all beyond */
+    const yaw3pitch_real_t t248 = t0 * t245 + t2 * t247; /* link j2: column of the mass matrix */
     input_by_ddq[4] = t248;
-    const yaw3pitch_real_t t249 = t2 * t246 - t0 * t244;
+    const yaw3pitch_real_t t249 = t2 * t246 - t0 * t244; /* link j3: column of the mass matrix */
     input_by_ddq[8] = t249;
-    const yaw3pitch_real_t t250 = t1 * t240 + t3 * t242;
+    const yaw3pitch_real_t t250 = t1 * t240 + t3 * t242; /* link j4: column of the mass matrix */
     const yaw3pitch_real_t t251 = t1 * t242 - t3 * t240;
     const yaw3pitch_real_t t252 = t2 * t251 - t0 * t250;
     input_by_ddq[12] = t252;
     const yaw3pitch_real_t t253 = YAW3PITCH_C(2.0) * t30;
     const yaw3pitch_real_t t254 = YAW3PITCH_C(-2.0) * t35;
+    /* link j2: derivatives */
     const yaw3pitch_real_t t255 = t253 * t176 + t254 * t182 + (t56 * t234 - t86 * t237 - t99 * t245);
     const yaw3pitch_real_t t256 = t253 * t189 + t254 * t178 + (t56 * t237 - t86 * t236 - t99 * t247);
     const yaw3pitch_real_t t257 = t0 * (t98 + (t255 + t29 * t193)) + t2 * (t90 + (t256 - t34 * t193));
     const yaw3pitch_real_t t258 = t253 * t192 + t254 * t191 - (t56 * t206 + t86 * t207);
     input_by_q[1] = t257 + YAW3PITCH_C(0.12) * t258;
+    /* link j4: inertia of it and all beyond */
     const yaw3pitch_real_t t259 = parameters[ZZ3] + (parameters[ZZ4] + t228);
-    const yaw3pitch_real_t t260 = parameters[ZZ2] + (t259 + t235);
+    const yaw3pitch_real_t t260 = parameters[ZZ2] + (t259 + t235); /* link j3: inertia of it and all beyond */
+    /* link j2: derivatives */
     const yaw3pitch_real_t t261 = t56 * t245 - t86 * t247 - t99 * t260 + (t30 * t203 + t35 * t205);
     input_by_q[5] = t34 * t206 - t29 * t207 + t261;
-    const yaw3pitch_real_t t262 = t259 + YAW3PITCH_C(0.8) * t184;
+    const yaw3pitch_real_t t262 = t259 + YAW3PITCH_C(0.8) * t184; /* link j3: column of the mass matrix */
+    /* link j3: derivatives */
     const yaw3pitch_real_t t263 = t30 * t213 - t35 * t214 - (t56 * t244 + t86 * t246 + t99 * t262);
     input_by_q[9] = t263 + (t34 * t167 - t29 * t184);
+    /* link j4: column of the mass matrix */
     const yaw3pitch_real_t t264 = parameters[ZZ4] + YAW3PITCH_C(0.7) * t154;
     const yaw3pitch_real_t t265 = t264 + YAW3PITCH_C(0.8) * t221;
+    /* link j4: derivatives */
     const yaw3pitch_real_t t266 = t30 * t222 - t35 * t224 - (t56 * t250 + t86 * t251 + t99 * t265);
     input_by_q[13] = t266 + (t34 * t223 - t29 * t221);
     const yaw3pitch_real_t t267 = parameters[ZZ4] - t127;
     const yaw3pitch_real_t t268 = t13 * parameters[YZ4] + t11 * t267;
     const yaw3pitch_real_t t269 = t17 * t267 - t13 * parameters[XZ4];
     const yaw3pitch_real_t t270 = t150 - parameters[ZZ3];
+    /* link j4: inertia, momentum beyond */
     const yaw3pitch_real_t t271 = t7 * t269 - t5 * t268 - (t12 * parameters[YZ3] + t40 * t270);
     const yaw3pitch_real_t t272 = t12 * parameters[XZ3] + t46 * t270 - (t7 * t268 + t5 * t269
         + parameters[MZ4] * t139);
     const yaw3pitch_real_t t273 = parameters[ZZ2] - t180;
+    /* link j3: inertia, momentum beyond */
     const yaw3pitch_real_t t274 = t30 * t273 - dq[1] * parameters[YZ2] + (t1 * t271 - t3 * t272);
+    /* link j2: derivatives */
     const yaw3pitch_real_t t275 = t0 * (YAW3PITCH_C(2.0) * t274 + (t234 * t253 + t237 * t254));
+    /* link j3: inertia, momentum beyond */
     const yaw3pitch_real_t t276 = dq[1] * parameters[XZ2] - t35 * t273 + (t3 * t271 + t1 * t272
         + t170 * t168);
+    /* link j2: derivatives */
     const yaw3pitch_real_t t277 = t2 * (YAW3PITCH_C(2.0) * t276 + (t237 * t253 + t236 * t254));
     const yaw3pitch_real_t t278 = t275 + t277 + YAW3PITCH_C(0.12) * (t207 * t254 - t206 * t253);
     input_by_dq[1] = t278;
     const yaw3pitch_real_t t279 = t122 + t125;
+    /* link j4: inertia, momentum beyond */
     const yaw3pitch_real_t t280 = t147 - t144 + (t143 + (t279 - t142));
+    /* link j2: derivatives */
     const yaw3pitch_real_t t281 = YAW3PITCH_C(2.0) * (t177 - t174 + (t173 + (t280 - t172)))
         + YAW3PITCH_C(2.0) * (t30 * t245 - t35 * t247);
     input_by_dq[5] = t281;
-    const yaw3pitch_real_t t282 = YAW3PITCH_C(2.0) * t280;
+    const yaw3pitch_real_t t282 = YAW3PITCH_C(2.0) * t280; /* link j3: derivatives */
     const yaw3pitch_real_t t283 = YAW3PITCH_C(1.6) * dq[1];
     const yaw3pitch_real_t t284 = t282 + t167 * t283 + YAW3PITCH_C(-2.0) * (t30 * t244 + t35 * t246);
     input_by_dq[9] = t284;
-    const yaw3pitch_real_t t285 = YAW3PITCH_C(2.0) * t279;
+    const yaw3pitch_real_t t285 = YAW3PITCH_C(2.0) * t279; /* link j4: derivatives */
     const yaw3pitch_real_t t286 = t285 + t138 * (YAW3PITCH_C(1.4) * t12);
     const yaw3pitch_real_t t287 = t286 + t223 * t283 + YAW3PITCH_C(-2.0) * (t30 * t250 + t35 * t251);
     input_by_dq[13] = t287;
@@ -450,6 +509,7 @@ int yaw3pitch_inverse_dynamics_derivatives_standard(
     input_by_ddq[13] = t265;
     const yaw3pitch_real_t t288 = YAW3PITCH_C(-2.0) * t40;
     const yaw3pitch_real_t t289 = YAW3PITCH_C(-2.0) * t46;
+    /* link j3: derivatives */
     const yaw3pitch_real_t t290 = t52 * t230 + t71 * t231 + t91 * t241 - (t288 * t146 + t289 * t152);
     const yaw3pitch_real_t t291 = t84 + (t290 - t39 * t170);
     const yaw3pitch_real_t t292 = t288 * t158 - t289 * t148 + (t52 * t231 + t71 * t229 + t91 * t243);
@@ -466,8 +526,10 @@ int yaw3pitch_inverse_dynamics_derivatives_standard(
     const yaw3pitch_real_t t302 = t301 - (t288 * t199 + t289 * t200 + t300) + t299;
     input_by_q[6] = t302;
     input_by_q[10] = t301 + (t40 * t210 + t46 * t211 - t300);
+    /* link j4: derivatives */
     const yaw3pitch_real_t t303 = t40 * t219 + t46 * t220 - (t52 * t240 + t71 * t242 + t91 * t264);
     input_by_q[14] = t303 + (t45 * t138 + t39 * t154);
+    /* link j3: derivatives */
     const yaw3pitch_real_t t304 = YAW3PITCH_C(2.0) * t271 - (t230 * t288 + t231 * t289);
     const yaw3pitch_real_t t305 = YAW3PITCH_C(2.0) * t272 + (t231 * t288 + t229 * t289);
     const yaw3pitch_real_t t306 = t165 * t288 + t166 * t289;
@@ -486,6 +548,7 @@ int yaw3pitch_inverse_dynamics_derivatives_standard(
     input_by_ddq[14] = t264;
     const yaw3pitch_real_t t311 = YAW3PITCH_C(2.0) * t11;
     const yaw3pitch_real_t t312 = YAW3PITCH_C(-2.0) * t17;
+    /* link j4: derivatives */
     const yaw3pitch_real_t t313 = t311 * t124 - t312 * t131 - (t16 * parameters[XX4] + t9 * parameters[XY4]
         + t77 * parameters[XZ4]);
     const yaw3pitch_real_t t314 = t70 + (t313 - t69);

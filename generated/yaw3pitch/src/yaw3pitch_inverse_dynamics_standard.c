@@ -66,11 +66,11 @@
  */
 #include "yaw3pitch_private.h"
 
-#if YAW3PITCH_GENERATION != 0x7BB9A1E4UL
+#if YAW3PITCH_GENERATION != 0x14CEE2C4UL
 #error "yaw3pitch.h and yaw3pitch_inverse_dynamics_standard.c are of different generations: generate the arm again"
 #endif
 
-int yaw3pitch_inverse_dynamics_standard(
+yaw3pitch_status_t yaw3pitch_inverse_dynamics_standard(
     const yaw3pitch_real_t q[YAW3PITCH_N_JOINTS],
     const yaw3pitch_real_t dq[YAW3PITCH_N_JOINTS],
     const yaw3pitch_real_t ddq[YAW3PITCH_N_JOINTS],
@@ -80,7 +80,7 @@ int yaw3pitch_inverse_dynamics_standard(
     enum { XX1 = 0, XY1, XZ1, YY1, YZ1, ZZ1, MX1, MY1, MZ1, M1, XX2, XY2, XZ2, YY2, YZ2, ZZ2, MX2, MY2, MZ2,
         M2, XX3, XY3, XZ3, YY3, YZ3, ZZ3, MX3, MY3, MZ3, M3, XX4, XY4, XZ4, YY4, YZ4, ZZ4, MX4, MY4, MZ4, M4
         };
-    int status = YAW3PITCH_STATUS_OK;
+    yaw3pitch_status_t status = YAW3PITCH_STATUS_OK;
 
     if (!yaw3pitch_within_joints(q, YAW3PITCH_C(1.0e8))
         || !yaw3pitch_within_joints(dq, YAW3PITCH_C(1.0e10))
@@ -99,137 +99,161 @@ int yaw3pitch_inverse_dynamics_standard(
     YAW3PITCH_SINCOS(q[2], &t3, &t1);
     yaw3pitch_real_t t7, t5;
     YAW3PITCH_SINCOS(q[3], &t7, &t5);
-    const yaw3pitch_real_t t4 = t0 * t1 + t2 * t3;
+    const yaw3pitch_real_t t4 = t0 * t1 + t2 * t3; /* link j3: motion */
     const yaw3pitch_real_t t6 = t0 * t3 - t2 * t1;
-    const yaw3pitch_real_t t8 = t7 * t6 - t5 * t4;
+    const yaw3pitch_real_t t8 = t7 * t6 - t5 * t4; /* link j4: motion */
     const yaw3pitch_real_t t9 = ddq[0] * t8;
     const yaw3pitch_real_t t10 = t7 * t4 + t5 * t6;
     const yaw3pitch_real_t t11 = dq[0] * t10;
-    const yaw3pitch_real_t t12 = dq[1] + dq[2];
-    const yaw3pitch_real_t t13 = dq[3] + t12;
+    const yaw3pitch_real_t t12 = dq[1] + dq[2]; /* link j3: motion */
+    const yaw3pitch_real_t t13 = dq[3] + t12; /* link j4: motion */
     const yaw3pitch_real_t t14 = t11 * t13;
     const yaw3pitch_real_t t15 = t9 + t14;
     const yaw3pitch_real_t t16 = ddq[0] * t10;
     const yaw3pitch_real_t t17 = dq[0] * t8;
     const yaw3pitch_real_t t18 = t17 * t13;
     const yaw3pitch_real_t t19 = t18 - t16;
-    const yaw3pitch_real_t t20 = t18 + t19;
+    const yaw3pitch_real_t t20 = t18 + t19; /* link j4: columns */
+    /* link j4: force and moment */
     const yaw3pitch_real_t t21 = t14 * (parameters[YY4] - parameters[ZZ4]) - t15 * parameters[XX4]
         + t20 * parameters[XY4];
-    const yaw3pitch_real_t t22 = t17 * t11;
-    const yaw3pitch_real_t t23 = ddq[1] + ddq[2];
-    const yaw3pitch_real_t t24 = ddq[3] + t23;
-    const yaw3pitch_real_t t25 = t24 + t22;
-    const yaw3pitch_real_t t26 = t11 * t11;
+    const yaw3pitch_real_t t22 = t17 * t11; /* link j4: motion */
+    const yaw3pitch_real_t t23 = ddq[1] + ddq[2]; /* link j3: motion */
+    const yaw3pitch_real_t t24 = ddq[3] + t23; /* link j4: motion */
+    const yaw3pitch_real_t t25 = t24 + t22; /* link j4: columns */
+    const yaw3pitch_real_t t26 = t11 * t11; /* link j4: motion */
     const yaw3pitch_real_t t27 = t13 * t13;
-    const yaw3pitch_real_t t28 = YAW3PITCH_C(-0.12) * (dq[0] * dq[0]);
+    const yaw3pitch_real_t t28 = YAW3PITCH_C(-0.12) * (dq[0] * dq[0]); /* link j2: motion */
     const yaw3pitch_real_t t29 = t2 * t28 + YAW3PITCH_C(9.81) * t0;
     const yaw3pitch_real_t t30 = t2 * dq[0];
     const yaw3pitch_real_t t31 = t30 * t30;
     const yaw3pitch_real_t t32 = dq[1] * dq[1];
-    const yaw3pitch_real_t t33 = YAW3PITCH_C(0.8) * (t31 + t32) - t29;
-    const yaw3pitch_real_t t34 = t0 * t28 + YAW3PITCH_C(-9.81) * t2;
+    const yaw3pitch_real_t t33 = YAW3PITCH_C(0.8) * (t31 + t32) - t29; /* link j3: motion */
+    const yaw3pitch_real_t t34 = t0 * t28 + YAW3PITCH_C(-9.81) * t2; /* link j2: motion */
     const yaw3pitch_real_t t35 = t0 * dq[0];
     const yaw3pitch_real_t t36 = t35 * t30;
-    const yaw3pitch_real_t t37 = ddq[1] + t36;
+    const yaw3pitch_real_t t37 = ddq[1] + t36; /* link j3: motion */
     const yaw3pitch_real_t t38 = t34 + YAW3PITCH_C(-0.8) * t37;
     const yaw3pitch_real_t t39 = t1 * t33 + t3 * t38;
     const yaw3pitch_real_t t40 = dq[0] * t6;
     const yaw3pitch_real_t t41 = t40 * t40;
     const yaw3pitch_real_t t42 = t12 * t12;
-    const yaw3pitch_real_t t43 = t41 + t42;
+    const yaw3pitch_real_t t43 = t41 + t42; /* link j4: motion */
     const yaw3pitch_real_t t44 = t39 + YAW3PITCH_C(0.7) * t43;
-    const yaw3pitch_real_t t45 = t1 * t38 - t3 * t33;
+    const yaw3pitch_real_t t45 = t1 * t38 - t3 * t33; /* link j3: motion */
     const yaw3pitch_real_t t46 = dq[0] * t4;
     const yaw3pitch_real_t t47 = t46 * t40;
-    const yaw3pitch_real_t t48 = t23 - t47;
+    const yaw3pitch_real_t t48 = t23 - t47; /* link j4: motion */
     const yaw3pitch_real_t t49 = t45 + YAW3PITCH_C(-0.7) * t48;
     const yaw3pitch_real_t t50 = t7 * t44 - t5 * t49;
-    const yaw3pitch_real_t t51 = ddq[0] * t6;
+    const yaw3pitch_real_t t51 = ddq[0] * t6; /* link j3: motion */
     const yaw3pitch_real_t t52 = t46 * t12;
     const yaw3pitch_real_t t53 = t51 + t52;
-    const yaw3pitch_real_t t54 = t52 + t53;
-    const yaw3pitch_real_t t55 = t2 * ddq[0];
+    const yaw3pitch_real_t t54 = t52 + t53; /* link j4: motion */
+    const yaw3pitch_real_t t55 = t2 * ddq[0]; /* link j2: motion */
     const yaw3pitch_real_t t56 = dq[1] * t35;
     const yaw3pitch_real_t t57 = t55 - t56;
-    const yaw3pitch_real_t t58 = t57 - t56;
-    const yaw3pitch_real_t t59 = YAW3PITCH_C(-0.12) * ddq[0];
-    const yaw3pitch_real_t t60 = t59 + YAW3PITCH_C(-0.8) * t58;
-    const yaw3pitch_real_t t61 = t60 + YAW3PITCH_C(0.7) * t54;
+    const yaw3pitch_real_t t58 = t57 - t56; /* link j3: motion */
+    const yaw3pitch_real_t t59 = YAW3PITCH_C(-0.12) * ddq[0]; /* link j2: motion */
+    const yaw3pitch_real_t t60 = t59 + YAW3PITCH_C(-0.8) * t58; /* link j3: motion */
+    const yaw3pitch_real_t t61 = t60 + YAW3PITCH_C(0.7) * t54; /* link j4: motion */
+    /* link j4: force and moment */
     const yaw3pitch_real_t t62 = (t26 - t27) * parameters[YZ4] + (t21 + t25 * parameters[XZ4])
         + (t61 * parameters[MY4] - t50 * parameters[MZ4]);
-    const yaw3pitch_real_t t63 = t14 + t15;
+    const yaw3pitch_real_t t63 = t14 + t15; /* link j4: columns */
+    /* link j4: force and moment */
     const yaw3pitch_real_t t64 = t63 * parameters[XY4] - (t18 * (parameters[ZZ4] - parameters[XX4])
         + t19 * parameters[YY4]);
-    const yaw3pitch_real_t t65 = t22 - t24;
-    const yaw3pitch_real_t t66 = t17 * t17;
+    const yaw3pitch_real_t t65 = t22 - t24; /* link j4: columns */
+    const yaw3pitch_real_t t66 = t17 * t17; /* link j4: motion */
     const yaw3pitch_real_t t67 = t5 * t44 + t7 * t49;
+    /* link j4: force and moment */
     const yaw3pitch_real_t t68 = (t66 - t27) * parameters[XZ4] + (t64 + t65 * parameters[YZ4])
         + (t67 * parameters[MZ4] + t61 * parameters[MX4]);
-    const yaw3pitch_real_t t69 = ddq[0] * t4;
+    const yaw3pitch_real_t t69 = ddq[0] * t4; /* link j3: motion */
     const yaw3pitch_real_t t70 = t40 * t12;
     const yaw3pitch_real_t t71 = t70 - t69;
+    /* link j3: force and moment */
     const yaw3pitch_real_t t72 = t70 * (parameters[YY3] - parameters[ZZ3]) - t71 * parameters[XX3]
         - t54 * parameters[XY3];
     const yaw3pitch_real_t t73 = t60 * parameters[MY3] + t45 * parameters[MZ3] + ((t41
         - t42) * parameters[YZ3] + (t72 + t48 * parameters[XZ3]));
-    const yaw3pitch_real_t t74 = t73 + (t5 * t62 + t7 * t68);
+    const yaw3pitch_real_t t74 = t73 + (t5 * t62 + t7 * t68); /* link j4: what it passes on */
+    /* link j4: force and moment */
     const yaw3pitch_real_t t75 = (t66 + t26) * parameters[MZ4] + (t20 * parameters[MX4]
         + t63 * parameters[MY4]);
     const yaw3pitch_real_t t76 = t75 - t61 * parameters[M4];
-    const yaw3pitch_real_t t77 = t70 + t71;
+    const yaw3pitch_real_t t77 = t70 + t71; /* link j4: motion */
+    /* link j3: force and moment */
     const yaw3pitch_real_t t78 = t52 * (parameters[XX3] - parameters[ZZ3]) - t53 * parameters[YY3]
         - t77 * parameters[XY3];
-    const yaw3pitch_real_t t79 = t23 + t47;
-    const yaw3pitch_real_t t80 = t46 * t46;
+    const yaw3pitch_real_t t79 = t23 + t47; /* link j4: motion */
+    const yaw3pitch_real_t t80 = t46 * t46; /* link j3: motion */
+    /* link j3: force and moment */
     const yaw3pitch_real_t t81 = t39 * parameters[MZ3] + t60 * parameters[MX3] + ((t80
         - t42) * parameters[XZ3] - (t78 + t79 * parameters[YZ3]));
+    /* link j4: what it passes on */
     const yaw3pitch_real_t t82 = t81 - (t7 * t62 - t5 * t68 + YAW3PITCH_C(0.7) * t76);
-    const yaw3pitch_real_t t83 = dq[1] * t30;
+    const yaw3pitch_real_t t83 = dq[1] * t30; /* link j2: motion */
     const yaw3pitch_real_t t84 = t0 * ddq[0];
     const yaw3pitch_real_t t85 = t84 + t83;
+    /* link j2: force and moment */
     const yaw3pitch_real_t t86 = t83 * (parameters[ZZ2] - parameters[YY2]) + t85 * parameters[XX2]
         + t58 * parameters[XY2];
     const yaw3pitch_real_t t87 = (t31 - t32) * parameters[YZ2] + (t86 + t37 * parameters[XZ2])
         + (t34 * parameters[MZ2] + t59 * parameters[MY2]);
+    /* link j3: force and moment */
     const yaw3pitch_real_t t88 = (t80 + t41) * parameters[MZ3] + (t77 * parameters[MY3]
         - t54 * parameters[MX3]);
-    const yaw3pitch_real_t t89 = t88 - t60 * parameters[M3] + t76;
-    const yaw3pitch_real_t t90 = t83 + t85;
+    const yaw3pitch_real_t t89 = t88 - t60 * parameters[M3] + t76; /* link j4: what it passes on */
+    const yaw3pitch_real_t t90 = t83 + t85; /* link j3: motion */
+    /* link j2: force and moment */
     const yaw3pitch_real_t t91 = t56 * (parameters[XX2] - parameters[ZZ2]) + t57 * parameters[YY2]
         + t90 * parameters[XY2];
-    const yaw3pitch_real_t t92 = t35 * t35;
+    const yaw3pitch_real_t t92 = t35 * t35; /* link j2: motion */
+    /* link j2: force and moment */
     const yaw3pitch_real_t t93 = (t32 - t92) * parameters[XZ2] + (t91 + (ddq[1] - t36) * parameters[YZ2]);
+    /* link j3: what it passes on */
     const yaw3pitch_real_t t94 = t93 + (t29 * parameters[MZ2] - t59 * parameters[MX2]) + (t3 * t74 - t1 * t82
         + YAW3PITCH_C(0.8) * t89);
+    /* link j2: what it passes on */
     const yaw3pitch_real_t t95 = t0 * (t87 + (t1 * t74 + t3 * t82)) + t2 * t94;
+    /* link j2: force and moment */
     const yaw3pitch_real_t t96 = (t92 + t31) * parameters[MZ2] + (t58 * parameters[MX2]
         - t90 * parameters[MY2]);
+    /* link j2: what it passes on */
     const yaw3pitch_real_t t97 = ddq[0] * parameters[ZZ1] + (t95 + YAW3PITCH_C(0.12) * (t96
         - t59 * parameters[M2] + t89));
     out[0] = t97;
+    /* link j4: force and moment */
     const yaw3pitch_real_t t98 = t65 * parameters[MY4] - (t26 + t27) * parameters[MX4]
         - t16 * parameters[MZ4];
     const yaw3pitch_real_t t99 = t98 - t67 * parameters[M4];
     const yaw3pitch_real_t t100 = (t66 + t27) * parameters[MY4] - t25 * parameters[MX4]
         - t9 * parameters[MZ4];
     const yaw3pitch_real_t t101 = t50 * parameters[M4] - t100;
+    /* link j3: force and moment */
     const yaw3pitch_real_t t102 = t39 * parameters[M3] + (t43 * parameters[MX3] + t79 * parameters[MY3]
         + t51 * parameters[MZ3]);
-    const yaw3pitch_real_t t103 = t7 * t99 + t5 * t101;
+    const yaw3pitch_real_t t103 = t7 * t99 + t5 * t101; /* link j4: what it passes on */
+    /* link j3: force and moment */
     const yaw3pitch_real_t t104 = t48 * parameters[MX3] - (t80 + t42) * parameters[MY3]
         - t69 * parameters[MZ3];
+    /* link j3: what it passes on */
     const yaw3pitch_real_t t105 = t3 * (t5 * t99 - t7 * t101 - t102) + t1 * (t104 - t45 * parameters[M3]
         + t103);
+    /* link j4: force and moment */
     const yaw3pitch_real_t t106 = t24 * parameters[ZZ4] - t22 * (parameters[XX4] - parameters[YY4])
         - t16 * parameters[YZ4];
     const yaw3pitch_real_t t107 = (t66 - t26) * parameters[XY4] + (t106 - t9 * parameters[XZ4])
         + (t50 * parameters[MX4] + t67 * parameters[MY4]);
+    /* link j3: force and moment */
     const yaw3pitch_real_t t108 = t47 * (parameters[XX3] - parameters[YY3]) + t23 * parameters[ZZ3]
         - t51 * parameters[YZ3];
     const yaw3pitch_real_t t109 = t39 * parameters[MY3] - t45 * parameters[MX3] + ((t80
         - t41) * parameters[XY3] + (t108 + t69 * parameters[XZ3]));
-    const yaw3pitch_real_t t110 = t109 + (t107 + YAW3PITCH_C(0.7) * t103);
+    const yaw3pitch_real_t t110 = t109 + (t107 + YAW3PITCH_C(0.7) * t103); /* link j4: what it passes on */
+    /* link j2: force and moment */
     const yaw3pitch_real_t t111 = t36 * (parameters[YY2] - parameters[XX2]) + ddq[1] * parameters[ZZ2]
         + t55 * parameters[YZ2];
     const yaw3pitch_real_t t112 = (t92 - t31) * parameters[XY2] + (t111 + t84 * parameters[XZ2])

@@ -20,15 +20,15 @@
  */
 #include "yaw3pitch_private.h"
 
-#if YAW3PITCH_GENERATION != 0x7BB9A1E4UL
+#if YAW3PITCH_GENERATION != 0x14CEE2C4UL
 #error "yaw3pitch.h and yaw3pitch_jacobian.c are of different generations: generate the arm again"
 #endif
 
-int yaw3pitch_jacobian(
+yaw3pitch_status_t yaw3pitch_jacobian(
     const yaw3pitch_real_t q[YAW3PITCH_N_JOINTS],
     yaw3pitch_real_t out[6 * YAW3PITCH_N_JOINTS])
 {
-    int status = YAW3PITCH_STATUS_OK;
+    yaw3pitch_status_t status = YAW3PITCH_STATUS_OK;
 
     if (!yaw3pitch_within_joints(q, YAW3PITCH_C(1.0e8))) {
         status |= YAW3PITCH_STATUS_INPUT;
@@ -44,18 +44,18 @@ int yaw3pitch_jacobian(
     YAW3PITCH_SINCOS(q[1], &t5, &t2);
     yaw3pitch_real_t t6, t4;
     YAW3PITCH_SINCOS(q[2], &t6, &t4);
-    const yaw3pitch_real_t t1 = YAW3PITCH_C(-0.12) * t0;
+    const yaw3pitch_real_t t1 = YAW3PITCH_C(-0.12) * t0; /* link j2: pose */
     const yaw3pitch_real_t t3 = t0 * t2;
-    const yaw3pitch_real_t t7 = YAW3PITCH_C(0.7) * (t6 * (t0 * t5) - t4 * t3);
+    const yaw3pitch_real_t t7 = YAW3PITCH_C(0.7) * (t6 * (t0 * t5) - t4 * t3); /* link j4: pose */
     const yaw3pitch_real_t t8 = t1 + YAW3PITCH_C(-0.8) * t3 + t7;
     out[0] = t8;
     const yaw3pitch_real_t t9 = YAW3PITCH_C(-0.7) * (t5 * t4 + t2 * t6);
     const yaw3pitch_real_t t10 = YAW3PITCH_C(-0.8) * t5 - YAW3PITCH_C(0.45) + t9 + YAW3PITCH_C(0.45);
     out[1] = t11 * t10;
     out[2] = t11 * t9;
-    const yaw3pitch_real_t t12 = YAW3PITCH_C(0.12) * t11;
+    const yaw3pitch_real_t t12 = YAW3PITCH_C(0.12) * t11; /* link j2: pose */
     const yaw3pitch_real_t t13 = t11 * t2;
-    const yaw3pitch_real_t t14 = YAW3PITCH_C(0.7) * (t4 * t13 - t6 * (t11 * t5));
+    const yaw3pitch_real_t t14 = YAW3PITCH_C(0.7) * (t4 * t13 - t6 * (t11 * t5)); /* link j4: pose */
     const yaw3pitch_real_t t15 = t12 + YAW3PITCH_C(0.8) * t13 + t14;
     out[4] = t15;
     out[5] = t0 * t10;

@@ -24,11 +24,11 @@
  */
 #include "yaw3pitch_private.h"
 
-#if YAW3PITCH_GENERATION != 0x7BB9A1E4UL
+#if YAW3PITCH_GENERATION != 0x14CEE2C4UL
 #error "yaw3pitch.h and yaw3pitch_motor_from_joint.c are of different generations: generate the arm again"
 #endif
 
-int yaw3pitch_motor_from_joint(
+yaw3pitch_status_t yaw3pitch_motor_from_joint(
     const yaw3pitch_real_t q[YAW3PITCH_N_JOINTS],
     const yaw3pitch_real_t dq[YAW3PITCH_N_JOINTS],
     const yaw3pitch_real_t ddq[YAW3PITCH_N_JOINTS],
@@ -36,7 +36,7 @@ int yaw3pitch_motor_from_joint(
     yaw3pitch_real_t dq_m[YAW3PITCH_N_JOINTS],
     yaw3pitch_real_t ddq_m[YAW3PITCH_N_JOINTS])
 {
-    int status = YAW3PITCH_STATUS_OK;
+    yaw3pitch_status_t status = YAW3PITCH_STATUS_OK;
 
     if (!yaw3pitch_within_joints(q, YAW3PITCH_C(1.0e8))
         || !yaw3pitch_within_joints(dq, YAW3PITCH_C(1.0e10))

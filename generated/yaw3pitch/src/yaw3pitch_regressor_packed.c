@@ -27,7 +27,7 @@
  */
 #include "yaw3pitch_private.h"
 
-#if YAW3PITCH_GENERATION != 0x7BB9A1E4UL
+#if YAW3PITCH_GENERATION != 0x14CEE2C4UL
 #error "yaw3pitch.h and yaw3pitch_regressor_packed.c are of different generations: generate the arm again"
 #endif
 
@@ -42,13 +42,13 @@ const unsigned short yaw3pitch_regressor_columns[YAW3PITCH_N_PACKED] = {
     16, 17, 18, 19, 20, 21
 };
 
-int yaw3pitch_regressor_packed(
+yaw3pitch_status_t yaw3pitch_regressor_packed(
     const yaw3pitch_real_t q[YAW3PITCH_N_JOINTS],
     const yaw3pitch_real_t dq[YAW3PITCH_N_JOINTS],
     const yaw3pitch_real_t ddq[YAW3PITCH_N_JOINTS],
     yaw3pitch_real_t out[YAW3PITCH_N_PACKED])
 {
-    int status = YAW3PITCH_STATUS_OK;
+    yaw3pitch_status_t status = YAW3PITCH_STATUS_OK;
 
     if (!yaw3pitch_within_joints(q, YAW3PITCH_C(1.0e8))
         || !yaw3pitch_within_joints(dq, YAW3PITCH_C(1.0e10))
@@ -67,25 +67,25 @@ int yaw3pitch_regressor_packed(
     yaw3pitch_real_t t53, t54;
     YAW3PITCH_SINCOS(q[3], &t53, &t54);
     out[0] = ddq[0];
-    const yaw3pitch_real_t t1 = t0 * dq[0];
+    const yaw3pitch_real_t t1 = t0 * dq[0]; /* link j2: motion */
     const yaw3pitch_real_t t2 = dq[1] * t1;
     const yaw3pitch_real_t t4 = t3 * ddq[0];
     const yaw3pitch_real_t t5 = t2 + t4;
     const yaw3pitch_real_t t6 = t3 * dq[0];
     const yaw3pitch_real_t t7 = dq[1] * t6;
-    const yaw3pitch_real_t t8 = t0 * t7;
+    const yaw3pitch_real_t t8 = t0 * t7; /* link j2: columns */
     out[1] = t3 * t5 + t8;
-    const yaw3pitch_real_t t9 = t6 * t1;
+    const yaw3pitch_real_t t9 = t6 * t1; /* link j2: motion */
     out[22] = -t9;
-    const yaw3pitch_real_t t10 = t2 + t5;
-    const yaw3pitch_real_t t11 = t0 * ddq[0];
-    const yaw3pitch_real_t t12 = t11 - t7 - t7;
+    const yaw3pitch_real_t t10 = t2 + t5; /* link j3: motion */
+    const yaw3pitch_real_t t11 = t0 * ddq[0]; /* link j2: motion */
+    const yaw3pitch_real_t t12 = t11 - t7 - t7; /* link j3: motion */
     out[2] = t0 * t10 + t3 * t12;
-    const yaw3pitch_real_t t13 = t6 * t6;
+    const yaw3pitch_real_t t13 = t6 * t6; /* link j2: motion */
     const yaw3pitch_real_t t14 = t1 * t1;
     out[23] = t13 - t14;
-    const yaw3pitch_real_t t15 = ddq[1] + t9;
-    const yaw3pitch_real_t t16 = dq[1] * dq[1];
+    const yaw3pitch_real_t t15 = ddq[1] + t9; /* link j3: motion */
+    const yaw3pitch_real_t t16 = dq[1] * dq[1]; /* link j2: motion */
     out[3] = t3 * t15 + t0 * (t16 - t13);
     out[24] = t4;
     out[4] = t0 * (ddq[1] - t9) + t3 * (t14 - t16);
@@ -100,7 +100,7 @@ int yaw3pitch_regressor_packed(
     out[7] = YAW3PITCH_C(-0.12) * t10 + t3 * t17;
     const yaw3pitch_real_t t20 = t0 * t18 + YAW3PITCH_C(-9.81) * t3;
     out[28] = t20;
-    const yaw3pitch_real_t t23 = t0 * t22 - t3 * t21;
+    const yaw3pitch_real_t t23 = t0 * t22 - t3 * t21; /* link j3: motion */
     const yaw3pitch_real_t t24 = dq[0] * t23;
     const yaw3pitch_real_t t25 = dq[1] + dq[2];
     const yaw3pitch_real_t t26 = t25 * t24;
@@ -109,49 +109,50 @@ int yaw3pitch_regressor_packed(
     const yaw3pitch_real_t t29 = t26 + t28;
     const yaw3pitch_real_t t30 = dq[0] * t27;
     const yaw3pitch_real_t t31 = t25 * t30;
-    const yaw3pitch_real_t t32 = t23 * t31;
+    const yaw3pitch_real_t t32 = t23 * t31; /* link j3: columns */
     out[8] = t27 * t29 + t32;
-    const yaw3pitch_real_t t33 = t30 * t24;
+    const yaw3pitch_real_t t33 = t30 * t24; /* link j3: motion */
     out[29] = -t33;
     out[43] = -t33;
-    const yaw3pitch_real_t t34 = t26 + t29;
-    const yaw3pitch_real_t t35 = ddq[0] * t23;
-    const yaw3pitch_real_t t36 = t35 - t31 - t31;
+    const yaw3pitch_real_t t34 = t26 + t29; /* link j4: motion */
+    const yaw3pitch_real_t t35 = ddq[0] * t23; /* link j3: motion */
+    const yaw3pitch_real_t t36 = t35 - t31 - t31; /* link j4: motion */
     out[9] = t23 * t34 + t27 * t36;
-    const yaw3pitch_real_t t37 = t30 * t30;
+    const yaw3pitch_real_t t37 = t30 * t30; /* link j3: motion */
     const yaw3pitch_real_t t38 = t24 * t24;
-    const yaw3pitch_real_t t39 = t37 - t38;
+    const yaw3pitch_real_t t39 = t37 - t38; /* link j3: force and moment */
     out[30] = t39;
     out[44] = t39;
-    const yaw3pitch_real_t t40 = ddq[1] + ddq[2];
-    const yaw3pitch_real_t t41 = t33 + t40;
-    const yaw3pitch_real_t t42 = t25 * t25;
+    const yaw3pitch_real_t t40 = ddq[1] + ddq[2]; /* link j3: motion */
+    const yaw3pitch_real_t t41 = t33 + t40; /* link j4: motion */
+    const yaw3pitch_real_t t42 = t25 * t25; /* link j3: motion */
     out[10] = t27 * t41 - t23 * (t37 - t42);
     out[31] = t28;
     out[45] = t28;
-    const yaw3pitch_real_t t43 = t33 - t40;
+    const yaw3pitch_real_t t43 = t33 - t40; /* link j4: motion */
     out[11] = t27 * (t38 - t42) - t23 * t43;
     out[32] = t35;
     out[46] = t35;
     out[12] = t27 * t26 - t32;
     out[33] = t40;
     out[47] = t40;
+    /* link j3: velocities by those of the joints */
     const yaw3pitch_real_t t44 = YAW3PITCH_C(0.8) * t0 + YAW3PITCH_C(0.12);
-    const yaw3pitch_real_t t45 = t17 + YAW3PITCH_C(-0.8) * t12;
+    const yaw3pitch_real_t t45 = t17 + YAW3PITCH_C(-0.8) * t12; /* link j3: motion */
     out[13] = t36 * t44 - t23 * t45;
     const yaw3pitch_real_t t46 = t20 + YAW3PITCH_C(0.8) * (t14 + t16);
     const yaw3pitch_real_t t47 = t19 + YAW3PITCH_C(0.8) * t15;
     const yaw3pitch_real_t t48 = t21 * t46 + t22 * t47;
-    const yaw3pitch_real_t t49 = t42 + t38;
-    const yaw3pitch_real_t t50 = YAW3PITCH_C(-0.8) * t21;
+    const yaw3pitch_real_t t49 = t42 + t38; /* link j4: motion */
+    const yaw3pitch_real_t t50 = YAW3PITCH_C(-0.8) * t21; /* link j3: velocities by those of the joints */
     const yaw3pitch_real_t t51 = YAW3PITCH_C(-0.8) * t22;
     out[34] = t48 + (t49 * t50 - t41 * t51);
     out[48] = t48;
     out[14] = t27 * t45 - t34 * t44;
-    const yaw3pitch_real_t t52 = t22 * t46 - t21 * t47;
+    const yaw3pitch_real_t t52 = t22 * t46 - t21 * t47; /* link j3: motion */
     out[35] = t52 + ((t42 + t37) * t51 - t43 * t50);
     out[49] = t52;
-    const yaw3pitch_real_t t55 = t54 * t23 - t53 * t27;
+    const yaw3pitch_real_t t55 = t54 * t23 - t53 * t27; /* link j4: motion */
     const yaw3pitch_real_t t56 = dq[0] * t55;
     const yaw3pitch_real_t t57 = dq[3] + t25;
     const yaw3pitch_real_t t58 = t57 * t56;
@@ -160,30 +161,30 @@ int yaw3pitch_regressor_packed(
     const yaw3pitch_real_t t61 = t58 + t60;
     const yaw3pitch_real_t t62 = dq[0] * t59;
     const yaw3pitch_real_t t63 = t57 * t62;
-    const yaw3pitch_real_t t64 = t55 * t63;
+    const yaw3pitch_real_t t64 = t55 * t63; /* link j4: columns */
     out[15] = t59 * t61 + t64;
-    const yaw3pitch_real_t t65 = t62 * t56;
+    const yaw3pitch_real_t t65 = t62 * t56; /* link j4: motion */
     out[36] = -t65;
     out[50] = -t65;
     out[57] = -t65;
-    const yaw3pitch_real_t t66 = t58 + t61;
-    const yaw3pitch_real_t t67 = ddq[0] * t55;
-    const yaw3pitch_real_t t68 = t67 - t63 - t63;
+    const yaw3pitch_real_t t66 = t58 + t61; /* link j4: force and moment */
+    const yaw3pitch_real_t t67 = ddq[0] * t55; /* link j4: motion */
+    const yaw3pitch_real_t t68 = t67 - t63 - t63; /* link j4: force and moment */
     out[16] = t55 * t66 + t59 * t68;
-    const yaw3pitch_real_t t69 = t62 * t62;
+    const yaw3pitch_real_t t69 = t62 * t62; /* link j4: motion */
     const yaw3pitch_real_t t70 = t56 * t56;
-    const yaw3pitch_real_t t71 = t69 - t70;
+    const yaw3pitch_real_t t71 = t69 - t70; /* link j4: force and moment */
     out[37] = t71;
     out[51] = t71;
     out[58] = t71;
-    const yaw3pitch_real_t t72 = ddq[3] + t40;
-    const yaw3pitch_real_t t73 = t65 + t72;
-    const yaw3pitch_real_t t74 = t57 * t57;
+    const yaw3pitch_real_t t72 = ddq[3] + t40; /* link j4: motion */
+    const yaw3pitch_real_t t73 = t65 + t72; /* link j4: force and moment */
+    const yaw3pitch_real_t t74 = t57 * t57; /* link j4: motion */
     out[17] = t59 * t73 - t55 * (t69 - t74);
     out[38] = t60;
     out[52] = t60;
     out[59] = t60;
-    const yaw3pitch_real_t t75 = t65 - t72;
+    const yaw3pitch_real_t t75 = t65 - t72; /* link j4: force and moment */
     out[18] = t59 * (t70 - t74) - t55 * t75;
     out[39] = t67;
     out[53] = t67;
@@ -192,14 +193,15 @@ int yaw3pitch_regressor_packed(
     out[40] = t72;
     out[54] = t72;
     out[61] = t72;
+    /* link j4: velocities by those of the joints */
     const yaw3pitch_real_t t76 = t44 - YAW3PITCH_C(-0.7) * t23;
-    const yaw3pitch_real_t t77 = t45 + YAW3PITCH_C(-0.7) * t36;
+    const yaw3pitch_real_t t77 = t45 + YAW3PITCH_C(-0.7) * t36; /* link j4: motion */
     out[20] = t68 * t76 - t55 * t77;
     const yaw3pitch_real_t t78 = YAW3PITCH_C(0.7) * t49 + t52;
     const yaw3pitch_real_t t79 = t48 - YAW3PITCH_C(-0.7) * t41;
     const yaw3pitch_real_t t80 = t53 * t78 + t54 * t79;
-    const yaw3pitch_real_t t81 = t74 + t70;
-    const yaw3pitch_real_t t82 = t51 - YAW3PITCH_C(0.7);
+    const yaw3pitch_real_t t81 = t74 + t70; /* link j4: force and moment */
+    const yaw3pitch_real_t t82 = t51 - YAW3PITCH_C(0.7); /* link j4: velocities by those of the joints */
     const yaw3pitch_real_t t83 = t54 * t50 + t53 * t82;
     const yaw3pitch_real_t t84 = t54 * t82 - t53 * t50;
     out[41] = t80 + (t81 * t83 - t73 * t84);
@@ -208,8 +210,8 @@ int yaw3pitch_regressor_packed(
     out[55] = t80 + (t81 * t85 - t73 * t86);
     out[62] = t80;
     out[21] = t59 * t77 - t66 * t76;
-    const yaw3pitch_real_t t87 = t54 * t78 - t53 * t79;
-    const yaw3pitch_real_t t88 = t74 + t69;
+    const yaw3pitch_real_t t87 = t54 * t78 - t53 * t79; /* link j4: motion */
+    const yaw3pitch_real_t t88 = t74 + t69; /* link j4: force and moment */
     out[42] = t87 + (t88 * t84 - t75 * t83);
     out[56] = t87 + (t88 * t86 - t75 * t85);
     out[63] = t87;

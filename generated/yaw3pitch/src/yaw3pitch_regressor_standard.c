@@ -30,17 +30,17 @@
  */
 #include "yaw3pitch_private.h"
 
-#if YAW3PITCH_GENERATION != 0x7BB9A1E4UL
+#if YAW3PITCH_GENERATION != 0x14CEE2C4UL
 #error "yaw3pitch.h and yaw3pitch_regressor_standard.c are of different generations: generate the arm again"
 #endif
 
-int yaw3pitch_regressor_standard(
+yaw3pitch_status_t yaw3pitch_regressor_standard(
     const yaw3pitch_real_t q[YAW3PITCH_N_JOINTS],
     const yaw3pitch_real_t dq[YAW3PITCH_N_JOINTS],
     const yaw3pitch_real_t ddq[YAW3PITCH_N_JOINTS],
     yaw3pitch_real_t out[YAW3PITCH_N_JOINTS * YAW3PITCH_N_STANDARD_PARAMETERS])
 {
-    int status = YAW3PITCH_STATUS_OK;
+    yaw3pitch_status_t status = YAW3PITCH_STATUS_OK;
 
     if (!yaw3pitch_within_joints(q, YAW3PITCH_C(1.0e8))
         || !yaw3pitch_within_joints(dq, YAW3PITCH_C(1.0e10))
@@ -59,27 +59,27 @@ int yaw3pitch_regressor_standard(
     yaw3pitch_real_t t61, t60;
     YAW3PITCH_SINCOS(q[3], &t61, &t60);
     out[5] = ddq[0];
-    const yaw3pitch_real_t t1 = t0 * ddq[0];
+    const yaw3pitch_real_t t1 = t0 * ddq[0]; /* link j2: motion */
     const yaw3pitch_real_t t3 = t2 * dq[0];
     const yaw3pitch_real_t t4 = dq[1] * t3;
     const yaw3pitch_real_t t5 = t1 + t4;
     const yaw3pitch_real_t t6 = t0 * dq[0];
     const yaw3pitch_real_t t7 = dq[1] * t6;
-    const yaw3pitch_real_t t8 = t2 * t7;
+    const yaw3pitch_real_t t8 = t2 * t7; /* link j2: columns */
     const yaw3pitch_real_t t9 = t0 * t5 + t8;
     out[10] = t9;
-    const yaw3pitch_real_t t10 = t6 * t3;
+    const yaw3pitch_real_t t10 = t6 * t3; /* link j2: motion */
     out[50] = -t10;
-    const yaw3pitch_real_t t11 = t4 + t5;
-    const yaw3pitch_real_t t12 = t2 * ddq[0];
-    const yaw3pitch_real_t t13 = t12 - t7 - t7;
+    const yaw3pitch_real_t t11 = t4 + t5; /* link j3: motion */
+    const yaw3pitch_real_t t12 = t2 * ddq[0]; /* link j2: motion */
+    const yaw3pitch_real_t t13 = t12 - t7 - t7; /* link j3: motion */
     out[11] = t2 * t11 + t0 * t13;
-    const yaw3pitch_real_t t14 = t6 * t6;
+    const yaw3pitch_real_t t14 = t6 * t6; /* link j2: motion */
     const yaw3pitch_real_t t15 = t3 * t3;
     out[51] = t14 - t15;
-    const yaw3pitch_real_t t16 = ddq[1] + t10;
-    const yaw3pitch_real_t t17 = dq[1] * dq[1];
-    const yaw3pitch_real_t t18 = t0 * t16 + t2 * (t17 - t14);
+    const yaw3pitch_real_t t16 = ddq[1] + t10; /* link j3: motion */
+    const yaw3pitch_real_t t17 = dq[1] * dq[1]; /* link j2: motion */
+    const yaw3pitch_real_t t18 = t0 * t16 + t2 * (t17 - t14); /* link j2: columns */
     out[12] = t18;
     out[52] = t1;
     out[13] = ddq[0] - t9;
@@ -88,7 +88,7 @@ int yaw3pitch_regressor_standard(
     out[54] = t12;
     out[15] = t0 * t4 - t8;
     out[55] = ddq[1];
-    const yaw3pitch_real_t t19 = YAW3PITCH_C(-0.12) * ddq[0];
+    const yaw3pitch_real_t t19 = YAW3PITCH_C(-0.12) * ddq[0]; /* link j2: motion */
     out[16] = YAW3PITCH_C(0.12) * t13 - t2 * t19;
     const yaw3pitch_real_t t20 = YAW3PITCH_C(0.12) * (dq[0] * dq[0]);
     const yaw3pitch_real_t t21 = t0 * t20 + YAW3PITCH_C(9.81) * t2;
@@ -97,7 +97,7 @@ int yaw3pitch_regressor_standard(
     const yaw3pitch_real_t t22 = t2 * t20 + YAW3PITCH_C(-9.81) * t0;
     out[57] = t22;
     out[19] = YAW3PITCH_C(0.0144) * ddq[0];
-    const yaw3pitch_real_t t25 = t0 * t23 + t2 * t24;
+    const yaw3pitch_real_t t25 = t0 * t23 + t2 * t24; /* link j3: motion */
     const yaw3pitch_real_t t26 = ddq[0] * t25;
     const yaw3pitch_real_t t27 = t2 * t23 - t0 * t24;
     const yaw3pitch_real_t t28 = dq[0] * t27;
@@ -106,25 +106,25 @@ int yaw3pitch_regressor_standard(
     const yaw3pitch_real_t t31 = t26 + t30;
     const yaw3pitch_real_t t32 = dq[0] * t25;
     const yaw3pitch_real_t t33 = t32 * t29;
-    const yaw3pitch_real_t t34 = t27 * t33;
+    const yaw3pitch_real_t t34 = t27 * t33; /* link j3: columns */
     out[20] = t25 * t31 + t34;
-    const yaw3pitch_real_t t35 = t32 * t28;
+    const yaw3pitch_real_t t35 = t32 * t28; /* link j3: motion */
     out[60] = -t35;
     out[100] = -t35;
-    const yaw3pitch_real_t t36 = t30 + t31;
-    const yaw3pitch_real_t t37 = ddq[0] * t27;
+    const yaw3pitch_real_t t36 = t30 + t31; /* link j4: motion */
+    const yaw3pitch_real_t t37 = ddq[0] * t27; /* link j3: motion */
     const yaw3pitch_real_t t38 = t37 - t33;
-    const yaw3pitch_real_t t39 = t38 - t33;
+    const yaw3pitch_real_t t39 = t38 - t33; /* link j4: motion */
     out[21] = t27 * t36 + t25 * t39;
-    const yaw3pitch_real_t t40 = t32 * t32;
+    const yaw3pitch_real_t t40 = t32 * t32; /* link j3: motion */
     const yaw3pitch_real_t t41 = t28 * t28;
-    const yaw3pitch_real_t t42 = t40 - t41;
+    const yaw3pitch_real_t t42 = t40 - t41; /* link j3: columns */
     out[61] = t42;
     out[101] = t42;
-    const yaw3pitch_real_t t43 = ddq[1] + ddq[2];
-    const yaw3pitch_real_t t44 = t43 + t35;
-    const yaw3pitch_real_t t45 = t29 * t29;
-    const yaw3pitch_real_t t46 = t25 * t44 - t27 * (t40 - t45);
+    const yaw3pitch_real_t t43 = ddq[1] + ddq[2]; /* link j3: motion */
+    const yaw3pitch_real_t t44 = t43 + t35; /* link j4: motion */
+    const yaw3pitch_real_t t45 = t29 * t29; /* link j3: motion */
+    const yaw3pitch_real_t t46 = t25 * t44 - t27 * (t40 - t45); /* link j3: columns */
     out[22] = t46;
     out[62] = t26;
     out[102] = t26;
@@ -132,26 +132,27 @@ int yaw3pitch_regressor_standard(
     out[23] = t27 * t38 - t47;
     out[63] = t35;
     out[103] = t35;
-    const yaw3pitch_real_t t48 = t35 - t43;
+    const yaw3pitch_real_t t48 = t35 - t43; /* link j4: motion */
     out[24] = t25 * (t41 - t45) - t27 * t48;
     out[64] = t37;
     out[104] = t37;
     out[25] = t47 - t34;
     out[65] = t43;
     out[105] = t43;
+    /* link j3: velocities by those of the joints */
     const yaw3pitch_real_t t49 = YAW3PITCH_C(0.8) * t2 + YAW3PITCH_C(0.12);
-    const yaw3pitch_real_t t50 = t19 + YAW3PITCH_C(-0.8) * t13;
+    const yaw3pitch_real_t t50 = t19 + YAW3PITCH_C(-0.8) * t13; /* link j3: motion */
     out[26] = t39 * t49 - t27 * t50;
     const yaw3pitch_real_t t51 = t22 + YAW3PITCH_C(0.8) * (t15 + t17);
     const yaw3pitch_real_t t52 = t21 + YAW3PITCH_C(0.8) * t16;
     const yaw3pitch_real_t t53 = t24 * t51 + t23 * t52;
-    const yaw3pitch_real_t t54 = t41 + t45;
-    const yaw3pitch_real_t t55 = YAW3PITCH_C(-0.8) * t24;
+    const yaw3pitch_real_t t54 = t41 + t45; /* link j4: motion */
+    const yaw3pitch_real_t t55 = YAW3PITCH_C(-0.8) * t24; /* link j3: velocities by those of the joints */
     const yaw3pitch_real_t t56 = YAW3PITCH_C(0.8) * t23;
     out[66] = t53 + (t54 * t55 + t44 * t56);
     out[106] = t53;
     out[27] = t25 * t50 - t36 * t49;
-    const yaw3pitch_real_t t57 = t23 * t51 - t24 * t52;
+    const yaw3pitch_real_t t57 = t23 * t51 - t24 * t52; /* link j3: motion */
     out[67] = t57 - (t48 * t55 + (t40 + t45) * t56);
     out[107] = t57;
     const yaw3pitch_real_t t58 = YAW3PITCH_C(-0.8) * t18;
@@ -160,7 +161,7 @@ int yaw3pitch_regressor_standard(
     out[68] = t59;
     out[29] = -(t50 * t49);
     out[69] = t57 * t55 + t53 * t56;
-    const yaw3pitch_real_t t62 = t60 * t25 + t61 * t27;
+    const yaw3pitch_real_t t62 = t60 * t25 + t61 * t27; /* link j4: motion */
     const yaw3pitch_real_t t63 = ddq[0] * t62;
     const yaw3pitch_real_t t64 = t60 * t27 - t61 * t25;
     const yaw3pitch_real_t t65 = dq[0] * t64;
@@ -169,31 +170,31 @@ int yaw3pitch_regressor_standard(
     const yaw3pitch_real_t t68 = t63 + t67;
     const yaw3pitch_real_t t69 = dq[0] * t62;
     const yaw3pitch_real_t t70 = t69 * t66;
-    const yaw3pitch_real_t t71 = t64 * t70;
+    const yaw3pitch_real_t t71 = t64 * t70; /* link j4: columns */
     out[30] = t62 * t68 + t71;
-    const yaw3pitch_real_t t72 = t69 * t65;
+    const yaw3pitch_real_t t72 = t69 * t65; /* link j4: motion */
     out[70] = -t72;
     out[110] = -t72;
     out[150] = -t72;
-    const yaw3pitch_real_t t73 = t67 + t68;
-    const yaw3pitch_real_t t74 = ddq[0] * t64;
+    const yaw3pitch_real_t t73 = t67 + t68; /* link j4: columns */
+    const yaw3pitch_real_t t74 = ddq[0] * t64; /* link j4: motion */
     const yaw3pitch_real_t t75 = t74 - t70;
-    const yaw3pitch_real_t t76 = t75 - t70;
+    const yaw3pitch_real_t t76 = t75 - t70; /* link j4: columns */
     out[31] = t64 * t73 + t62 * t76;
-    const yaw3pitch_real_t t77 = t69 * t69;
+    const yaw3pitch_real_t t77 = t69 * t69; /* link j4: motion */
     const yaw3pitch_real_t t78 = t65 * t65;
-    const yaw3pitch_real_t t79 = t77 - t78;
+    const yaw3pitch_real_t t79 = t77 - t78; /* link j4: columns */
     out[71] = t79;
     out[111] = t79;
     out[151] = t79;
-    const yaw3pitch_real_t t80 = ddq[3] + t43;
-    const yaw3pitch_real_t t81 = t80 + t72;
-    const yaw3pitch_real_t t82 = t66 * t66;
+    const yaw3pitch_real_t t80 = ddq[3] + t43; /* link j4: motion */
+    const yaw3pitch_real_t t81 = t80 + t72; /* link j4: columns */
+    const yaw3pitch_real_t t82 = t66 * t66; /* link j4: motion */
     out[32] = t62 * t81 - t64 * (t77 - t82);
     out[72] = t63;
     out[112] = t63;
     out[152] = t63;
-    const yaw3pitch_real_t t83 = t62 * t67;
+    const yaw3pitch_real_t t83 = t62 * t67; /* link j4: columns */
     out[33] = t64 * t75 - t83;
     out[73] = t72;
     out[113] = t72;
@@ -207,14 +208,15 @@ int yaw3pitch_regressor_standard(
     out[75] = t80;
     out[115] = t80;
     out[155] = t80;
+    /* link j4: velocities by those of the joints */
     const yaw3pitch_real_t t85 = t49 + YAW3PITCH_C(0.7) * t27;
-    const yaw3pitch_real_t t86 = t50 + YAW3PITCH_C(-0.7) * t39;
+    const yaw3pitch_real_t t86 = t50 + YAW3PITCH_C(-0.7) * t39; /* link j4: motion */
     out[36] = t85 * t76 - t64 * t86;
     const yaw3pitch_real_t t87 = t57 + YAW3PITCH_C(0.7) * t54;
     const yaw3pitch_real_t t88 = t53 + YAW3PITCH_C(0.7) * t44;
     const yaw3pitch_real_t t89 = t61 * t87 + t60 * t88;
-    const yaw3pitch_real_t t90 = t78 + t82;
-    const yaw3pitch_real_t t91 = t56 + YAW3PITCH_C(0.7);
+    const yaw3pitch_real_t t90 = t78 + t82; /* link j4: columns */
+    const yaw3pitch_real_t t91 = t56 + YAW3PITCH_C(0.7); /* link j4: velocities by those of the joints */
     const yaw3pitch_real_t t92 = t60 * t55 - t61 * t91;
     const yaw3pitch_real_t t93 = t61 * t55 + t60 * t91;
     out[76] = t89 + (t92 * t90 + t93 * t81);
@@ -223,8 +225,8 @@ int yaw3pitch_regressor_standard(
     out[116] = t89 + (t94 * t90 + t95 * t81);
     out[156] = t89;
     out[37] = t62 * t86 - t85 * t73;
-    const yaw3pitch_real_t t96 = t60 * t87 - t61 * t88;
-    const yaw3pitch_real_t t97 = t77 + t82;
+    const yaw3pitch_real_t t96 = t60 * t87 - t61 * t88; /* link j4: motion */
+    const yaw3pitch_real_t t97 = t77 + t82; /* link j4: columns */
     out[77] = t96 - (t92 * t84 + t93 * t97);
     out[117] = t96 - (t94 * t84 + t95 * t97);
     out[157] = t96;

@@ -30,18 +30,18 @@
  */
 #include "yaw3pitch_private.h"
 
-#if YAW3PITCH_GENERATION != 0x7BB9A1E4UL
+#if YAW3PITCH_GENERATION != 0x14CEE2C4UL
 #error "yaw3pitch.h and yaw3pitch_slotine_li_regressor.c are of different generations: generate the arm again"
 #endif
 
-int yaw3pitch_slotine_li_regressor(
+yaw3pitch_status_t yaw3pitch_slotine_li_regressor(
     const yaw3pitch_real_t q[YAW3PITCH_N_JOINTS],
     const yaw3pitch_real_t dq[YAW3PITCH_N_JOINTS],
     const yaw3pitch_real_t dq_r[YAW3PITCH_N_JOINTS],
     const yaw3pitch_real_t ddq_r[YAW3PITCH_N_JOINTS],
     yaw3pitch_real_t out[YAW3PITCH_N_JOINTS * YAW3PITCH_N_PARAMETERS])
 {
-    int status = YAW3PITCH_STATUS_OK;
+    yaw3pitch_status_t status = YAW3PITCH_STATUS_OK;
 
     if (!yaw3pitch_within_joints(q, YAW3PITCH_C(1.0e8))
         || !yaw3pitch_within_joints(dq, YAW3PITCH_C(1.0e10))
@@ -61,7 +61,7 @@ int yaw3pitch_slotine_li_regressor(
     yaw3pitch_real_t t58, t59;
     YAW3PITCH_SINCOS(q[3], &t58, &t59);
     out[0] = ddq_r[0];
-    const yaw3pitch_real_t t1 = t0 * dq[0];
+    const yaw3pitch_real_t t1 = t0 * dq[0]; /* link j2: motion */
     const yaw3pitch_real_t t2 = t0 * dq_r[0];
     const yaw3pitch_real_t t3 = YAW3PITCH_C(0.5) * (t1 * dq_r[1] + dq[1] * t2);
     const yaw3pitch_real_t t5 = t4 * ddq_r[0];
@@ -69,19 +69,19 @@ int yaw3pitch_slotine_li_regressor(
     const yaw3pitch_real_t t7 = t4 * dq[0];
     const yaw3pitch_real_t t8 = t4 * dq_r[0];
     const yaw3pitch_real_t t9 = YAW3PITCH_C(-0.5) * (t7 * dq_r[1] + dq[1] * t8);
-    const yaw3pitch_real_t t10 = t0 * t9;
+    const yaw3pitch_real_t t10 = t0 * t9; /* link j2: columns */
     out[1] = t4 * t6 - t10;
-    const yaw3pitch_real_t t11 = YAW3PITCH_C(-0.5) * (t7 * t2 + t1 * t8);
+    const yaw3pitch_real_t t11 = YAW3PITCH_C(-0.5) * (t7 * t2 + t1 * t8); /* link j2: motion */
     out[23] = t11;
-    const yaw3pitch_real_t t12 = t3 + t6;
-    const yaw3pitch_real_t t13 = t0 * ddq_r[0];
-    const yaw3pitch_real_t t14 = t9 + (t13 + t9);
+    const yaw3pitch_real_t t12 = t3 + t6; /* link j3: motion */
+    const yaw3pitch_real_t t13 = t0 * ddq_r[0]; /* link j2: motion */
+    const yaw3pitch_real_t t14 = t9 + (t13 + t9); /* link j3: motion */
     out[2] = t0 * t12 + t4 * t14;
-    const yaw3pitch_real_t t15 = t7 * t8;
+    const yaw3pitch_real_t t15 = t7 * t8; /* link j2: motion */
     const yaw3pitch_real_t t16 = t1 * t2;
     out[24] = t15 - t16;
-    const yaw3pitch_real_t t17 = ddq_r[1] - t11;
-    const yaw3pitch_real_t t18 = dq[1] * dq_r[1];
+    const yaw3pitch_real_t t17 = ddq_r[1] - t11; /* link j3: motion */
+    const yaw3pitch_real_t t18 = dq[1] * dq_r[1]; /* link j2: motion */
     out[3] = t4 * t17 + t0 * (t18 - t15);
     out[25] = t5;
     out[4] = t0 * (ddq_r[1] + t11) + t4 * (t16 - t18);
@@ -96,7 +96,7 @@ int yaw3pitch_slotine_li_regressor(
     out[7] = YAW3PITCH_C(-0.12) * t12 + t4 * t19;
     const yaw3pitch_real_t t22 = YAW3PITCH_C(-9.81) * t4 + t0 * t20;
     out[29] = t22;
-    const yaw3pitch_real_t t25 = t0 * t24 - t4 * t23;
+    const yaw3pitch_real_t t25 = t0 * t24 - t4 * t23; /* link j3: motion */
     const yaw3pitch_real_t t26 = dq[0] * t25;
     const yaw3pitch_real_t t27 = dq_r[1] + dq_r[2];
     const yaw3pitch_real_t t28 = t25 * dq_r[0];
@@ -108,49 +108,50 @@ int yaw3pitch_slotine_li_regressor(
     const yaw3pitch_real_t t34 = dq[0] * t31;
     const yaw3pitch_real_t t35 = t31 * dq_r[0];
     const yaw3pitch_real_t t36 = YAW3PITCH_C(-0.5) * (t34 * t27 + t29 * t35);
-    const yaw3pitch_real_t t37 = t25 * t36;
+    const yaw3pitch_real_t t37 = t25 * t36; /* link j3: columns */
     out[8] = t31 * t33 - t37;
-    const yaw3pitch_real_t t38 = YAW3PITCH_C(-0.5) * (t34 * t28 + t26 * t35);
+    const yaw3pitch_real_t t38 = YAW3PITCH_C(-0.5) * (t34 * t28 + t26 * t35); /* link j3: motion */
     out[30] = t38;
     out[52] = t38;
-    const yaw3pitch_real_t t39 = t30 - t33;
-    const yaw3pitch_real_t t40 = t25 * ddq_r[0];
-    const yaw3pitch_real_t t41 = t36 + (t40 + t36);
+    const yaw3pitch_real_t t39 = t30 - t33; /* link j4: motion */
+    const yaw3pitch_real_t t40 = t25 * ddq_r[0]; /* link j3: motion */
+    const yaw3pitch_real_t t41 = t36 + (t40 + t36); /* link j4: motion */
     out[9] = t31 * t41 - t25 * t39;
-    const yaw3pitch_real_t t42 = t34 * t35;
+    const yaw3pitch_real_t t42 = t34 * t35; /* link j3: motion */
     const yaw3pitch_real_t t43 = t26 * t28;
-    const yaw3pitch_real_t t44 = t42 - t43;
+    const yaw3pitch_real_t t44 = t42 - t43; /* link j3: columns */
     out[31] = t44;
     out[53] = t44;
-    const yaw3pitch_real_t t45 = ddq_r[1] + ddq_r[2];
-    const yaw3pitch_real_t t46 = t45 - t38;
-    const yaw3pitch_real_t t47 = t29 * t27;
+    const yaw3pitch_real_t t45 = ddq_r[1] + ddq_r[2]; /* link j3: motion */
+    const yaw3pitch_real_t t46 = t45 - t38; /* link j4: motion */
+    const yaw3pitch_real_t t47 = t29 * t27; /* link j3: motion */
     out[10] = t31 * t46 - t25 * (t42 - t47);
     out[32] = t32;
     out[54] = t32;
-    const yaw3pitch_real_t t48 = t45 + t38;
+    const yaw3pitch_real_t t48 = t45 + t38; /* link j4: motion */
     out[11] = t25 * t48 - t31 * (t47 - t43);
     out[33] = t40;
     out[55] = t40;
     out[12] = t37 - t31 * t30;
     out[34] = t45;
     out[56] = t45;
+    /* link j3: velocities by those of the joints */
     const yaw3pitch_real_t t49 = YAW3PITCH_C(0.8) * t0 + YAW3PITCH_C(0.12);
-    const yaw3pitch_real_t t50 = t19 + YAW3PITCH_C(-0.8) * t14;
+    const yaw3pitch_real_t t50 = t19 + YAW3PITCH_C(-0.8) * t14; /* link j3: motion */
     out[13] = t49 * t41 - t25 * t50;
     const yaw3pitch_real_t t51 = t22 + YAW3PITCH_C(0.8) * (t16 + t18);
     const yaw3pitch_real_t t52 = t21 + YAW3PITCH_C(0.8) * t17;
     const yaw3pitch_real_t t53 = t23 * t51 + t24 * t52;
-    const yaw3pitch_real_t t54 = YAW3PITCH_C(-0.8) * t24;
-    const yaw3pitch_real_t t55 = t43 + t47;
-    const yaw3pitch_real_t t56 = YAW3PITCH_C(-0.8) * t23;
+    const yaw3pitch_real_t t54 = YAW3PITCH_C(-0.8) * t24; /* link j3: velocities by those of the joints */
+    const yaw3pitch_real_t t55 = t43 + t47; /* link j4: motion */
+    const yaw3pitch_real_t t56 = YAW3PITCH_C(-0.8) * t23; /* link j3: velocities by those of the joints */
     out[35] = t53 + (t56 * t55 - t54 * t46);
     out[57] = t53;
     out[14] = t49 * t39 + t31 * t50;
-    const yaw3pitch_real_t t57 = t24 * t51 - t23 * t52;
+    const yaw3pitch_real_t t57 = t24 * t51 - t23 * t52; /* link j3: motion */
     out[36] = t57 + (t56 * t48 + t54 * (t42 + t47));
     out[58] = t57;
-    const yaw3pitch_real_t t60 = t59 * t25 - t58 * t31;
+    const yaw3pitch_real_t t60 = t59 * t25 - t58 * t31; /* link j4: motion */
     const yaw3pitch_real_t t61 = dq[0] * t60;
     const yaw3pitch_real_t t62 = dq_r[3] + t27;
     const yaw3pitch_real_t t63 = t60 * dq_r[0];
@@ -162,30 +163,30 @@ int yaw3pitch_slotine_li_regressor(
     const yaw3pitch_real_t t69 = dq[0] * t66;
     const yaw3pitch_real_t t70 = t66 * dq_r[0];
     const yaw3pitch_real_t t71 = YAW3PITCH_C(-0.5) * (t69 * t62 + t64 * t70);
-    const yaw3pitch_real_t t72 = t60 * t71;
+    const yaw3pitch_real_t t72 = t60 * t71; /* link j4: columns */
     out[15] = t66 * t68 - t72;
-    const yaw3pitch_real_t t73 = YAW3PITCH_C(-0.5) * (t69 * t63 + t61 * t70);
+    const yaw3pitch_real_t t73 = YAW3PITCH_C(-0.5) * (t69 * t63 + t61 * t70); /* link j4: motion */
     out[37] = t73;
     out[59] = t73;
     out[81] = t73;
-    const yaw3pitch_real_t t74 = t65 - t68;
-    const yaw3pitch_real_t t75 = t60 * ddq_r[0];
-    const yaw3pitch_real_t t76 = t71 + (t75 + t71);
+    const yaw3pitch_real_t t74 = t65 - t68; /* link j4: columns */
+    const yaw3pitch_real_t t75 = t60 * ddq_r[0]; /* link j4: motion */
+    const yaw3pitch_real_t t76 = t71 + (t75 + t71); /* link j4: columns */
     out[16] = t66 * t76 - t60 * t74;
-    const yaw3pitch_real_t t77 = t69 * t70;
+    const yaw3pitch_real_t t77 = t69 * t70; /* link j4: motion */
     const yaw3pitch_real_t t78 = t61 * t63;
-    const yaw3pitch_real_t t79 = t77 - t78;
+    const yaw3pitch_real_t t79 = t77 - t78; /* link j4: columns */
     out[38] = t79;
     out[60] = t79;
     out[82] = t79;
-    const yaw3pitch_real_t t80 = ddq_r[3] + t45;
-    const yaw3pitch_real_t t81 = t80 - t73;
-    const yaw3pitch_real_t t82 = t64 * t62;
+    const yaw3pitch_real_t t80 = ddq_r[3] + t45; /* link j4: motion */
+    const yaw3pitch_real_t t81 = t80 - t73; /* link j4: columns */
+    const yaw3pitch_real_t t82 = t64 * t62; /* link j4: motion */
     out[17] = t66 * t81 - t60 * (t77 - t82);
     out[39] = t67;
     out[61] = t67;
     out[83] = t67;
-    const yaw3pitch_real_t t83 = t80 + t73;
+    const yaw3pitch_real_t t83 = t80 + t73; /* link j4: columns */
     out[18] = t60 * t83 - t66 * (t82 - t78);
     out[40] = t75;
     out[62] = t75;
@@ -194,24 +195,25 @@ int yaw3pitch_slotine_li_regressor(
     out[41] = t80;
     out[63] = t80;
     out[85] = t80;
+    /* link j4: velocities by those of the joints */
     const yaw3pitch_real_t t84 = t49 - YAW3PITCH_C(-0.7) * t25;
-    const yaw3pitch_real_t t85 = t50 + YAW3PITCH_C(-0.7) * t41;
+    const yaw3pitch_real_t t85 = t50 + YAW3PITCH_C(-0.7) * t41; /* link j4: motion */
     out[20] = t84 * t76 - t60 * t85;
     const yaw3pitch_real_t t86 = t53 + YAW3PITCH_C(0.7) * t46;
     const yaw3pitch_real_t t87 = t57 + YAW3PITCH_C(0.7) * t55;
     const yaw3pitch_real_t t88 = t58 * t87 + t59 * t86;
-    const yaw3pitch_real_t t89 = t54 - YAW3PITCH_C(0.7);
+    const yaw3pitch_real_t t89 = t54 - YAW3PITCH_C(0.7); /* link j4: velocities by those of the joints */
     const yaw3pitch_real_t t90 = t59 * t89 - t58 * t56;
-    const yaw3pitch_real_t t91 = t78 + t82;
-    const yaw3pitch_real_t t92 = t59 * t56 + t58 * t89;
+    const yaw3pitch_real_t t91 = t78 + t82; /* link j4: columns */
+    const yaw3pitch_real_t t92 = t59 * t56 + t58 * t89; /* link j4: velocities by those of the joints */
     out[42] = t88 + (t92 * t91 - t90 * t81);
     const yaw3pitch_real_t t93 = YAW3PITCH_C(0.7) * t59;
     const yaw3pitch_real_t t94 = YAW3PITCH_C(-0.7) * t58;
     out[64] = t88 + (t94 * t91 + t93 * t81);
     out[86] = t88;
     out[21] = t84 * t74 + t66 * t85;
-    const yaw3pitch_real_t t95 = t59 * t87 - t58 * t86;
-    const yaw3pitch_real_t t96 = t77 + t82;
+    const yaw3pitch_real_t t95 = t59 * t87 - t58 * t86; /* link j4: motion */
+    const yaw3pitch_real_t t96 = t77 + t82; /* link j4: columns */
     out[43] = t95 + (t92 * t83 + t90 * t96);
     out[65] = t95 + (t94 * t83 - t93 * t96);
     out[87] = t95;

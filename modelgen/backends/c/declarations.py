@@ -8,6 +8,7 @@ from dataclasses import dataclass
 
 from modelgen.backends.c.dialect import arrays, destinations, literal
 from modelgen.backends.c.lengths import argument_length, array_lengths
+from modelgen.backends.c.strokes import strokes, wrappers
 from modelgen.backends.documentation import (
     argument_row,
     function_operations,
@@ -19,6 +20,7 @@ from modelgen.backends.documentation import (
 from modelgen.backends.elements import base_parameters, standard_parameters
 from modelgen.backends.text import plain, table, wrapped
 from modelgen.functions.objects import Function, Model
+from modelgen.transmission import of_joint
 
 _ONE_LINE = 1000  # the comment of an enumerator is not wrapped
 
@@ -59,7 +61,7 @@ def function_text(model: Model, function: Function) -> FunctionText:
         summary=tuple(wrapped(plain(function.text), width=100).split("\n")),
         parameters=tuple(table(rows)),
         operations=function_operations(function),
-        signature=f"int {arm}_{function.name}(\n{arguments})",
+        signature=f"{arm}_status_t {arm}_{function.name}(\n{arguments})",
     )
 
 
@@ -83,7 +85,9 @@ def parameter_checks(model: Model) -> list[ParameterCheck]:
             suffix = "_standard" if function.name.endswith("_standard") else ""
             if a.name == "parameters" and a.size and suffix not in found:
                 length = argument_length(model, function, a)
-                signature = f"int {arm}_check_parameters{suffix}(const {arm}_real_t parameters[{length}])"
+                signature = (
+                    f"{arm}_status_t {arm}_check_parameters{suffix}(const {arm}_real_t parameters[{length}])"
+                )
                 limit = literal(arm, a.bound * a.bound)
                 found[suffix] = ParameterCheck(suffix, signature, a.text, a.size, limit)
     return list(found.values())
@@ -105,6 +109,8 @@ def header_values(model: Model, functions: list[FunctionText]) -> dict[str, obje
         sizes.append(("N_GEOMETRY", len(model.geometry), "lengths and angles given at run time"))
     if model.states:
         sizes.append(("N_STATES", len(model.states), "states of the effects"))
+    of_steps = {a.length: a for function in model.functions for a in function.arguments if a.length}
+    sizes += [(length, a.size, plain(a.text)) for length, a in of_steps.items()]
     return {
         "remarks": remarks(model),
         "gravity": ", ".join(f"{value:g}" for value in model.arm.gravity),
@@ -125,7 +131,18 @@ def header_values(model: Model, functions: list[FunctionText]) -> dict[str, obje
         "nominal": bool(model.nominal),
         "linked": _linked(model),
         "functions": functions,
+        "strokes": strokes(model),
+        "wrappers": wrappers(model),
+        "motor_unit": _motor_unit(model),
     }
+
+
+def _motor_unit(model: Model) -> str:
+    """What `unit` stands for, where a motor coordinate may be in any."""
+    driven = (of_joint(model.arm, model.arm.joints[i]) for i in model.arm.coordinates)
+    if any(t.driven and t.unit == "unit" for t in driven):
+        return "; `unit` is that of a motor coordinate in the description, increments say"
+    return ""
 
 
 def _linked(model: Model) -> list[str]:
@@ -133,6 +150,7 @@ def _linked(model: Model) -> list[str]:
     suffixes = [check.suffix for check in parameter_checks(model)]
     names = [function.name for function in model.functions]
     names += [*(f"check_parameters{suffix}" for suffix in suffixes), "model", "sincos"]
+    names += [stroke.name for stroke in strokes(model)]
     if "regressor_packed" in names:
         names += ["regressor_rows", "regressor_columns"]
     if model.nominal:

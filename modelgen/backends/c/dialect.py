@@ -7,7 +7,7 @@ from decimal import Decimal
 
 from modelgen.backends.c.pairs import Pair
 from modelgen.backends.elements import Element
-from modelgen.backends.text import UNBROKEN, wrapped, wrapped_code
+from modelgen.backends.text import UNBROKEN, with_remark, wrapped, wrapped_code
 from modelgen.functions.objects import (
     STATUS_INPUT,
     STATUS_PIVOT,
@@ -155,6 +155,10 @@ class CDialect:
         """Store an element in the array that holds the output."""
         array, offset = self.places[output]
         return wrapped_code(f"{array}[{offset + index}] = {text};", INDENT, INDENT * 2)
+
+    def remarked(self, statement: str, text: str) -> str:
+        """Behind the statement where there is room, else before it."""
+        return with_remark(statement, f"/* {text} */", INDENT)
 
     def guard(self, status: int, text: str) -> str:
         """Zeros and a status; the comparison is false for what is not a number."""

@@ -7,16 +7,20 @@ from math import prod
 
 from modelgen.backends.c.dialect import arrays
 from modelgen.functions.objects import Argument, Function, Model, Output
+from modelgen.functions.steps import OF_EFFECTS, STATE
 
-_SINGLE = ("dt", "time", "kinetic", "potential")
+_SINGLE = ("dt", "time", "forgetting", "kinetic", "potential")
 Factors = Sequence[tuple[str, int]]
 
 
 def argument_length(model: Model, function: Function, argument: Argument) -> str:
     """Length of an input, in print."""
+    if argument.length:
+        return _printed(model, [(argument.length, argument.size)], argument.size)
     known = {
         "parameters": _parameters(model, function),
-        "state": ("N_STATES", len(model.states)),
+        STATE: ("N_STATES", len(model.states)),
+        OF_EFFECTS: ("N_STATES", len(model.states)),
         "geometry": ("N_GEOMETRY", len(model.geometry)),
     }
     single = argument.name in _SINGLE
@@ -36,6 +40,8 @@ def array_lengths(model: Model, function: Function) -> dict[str, str]:
 
 def _shape(model: Model, function: Function, output: Output) -> Factors:
     joints = _joints(model)
+    if output.length:
+        return [(output.length, output.size)]
     if output.name in _SINGLE:
         return [("", 1)]
     if output.name == "state_next":

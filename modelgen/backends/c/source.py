@@ -29,7 +29,7 @@ def statements(
     status = _checked_output(function)
     dialect = CDialect(arm, function, named, checked=bool(status))
     macro = arm.upper()
-    lines = [*dialect.indices(), f"{INDENT}int status = {macro}_STATUS_OK;", ""]
+    lines = [*dialect.indices(), f"{INDENT}{arm}_status_t status = {macro}_STATUS_OK;", ""]
     lines += _checks(arm, function, joints)
     lines += [dialect.leave(f"status != {macro}_STATUS_OK", "status"), ""]
     together, rest = pairs(function.program)
@@ -90,5 +90,7 @@ def _checked_output(function: Function) -> int:
     """The status to report where an output is not finite, 0 where that cannot happen."""
     if any(s.target == ("guard", STATUS_PIVOT) for s in function.program.statements):
         return STATUS_PIVOT
+    if any(output.checked for output in function.outputs):
+        return STATUS_INPUT
     calls = {s.term[1] for s in function.program.statements if s.term[0] == "call"}
     return STATUS_INPUT if calls & _UNBOUNDED else 0

@@ -16,7 +16,7 @@ from modelgen.backends.documentation import (
 )
 from modelgen.backends.elements import Element, base_parameters, local_names
 from modelgen.backends.provenance import Provenance
-from modelgen.backends.text import plain, render, table, wrapped, wrapped_code
+from modelgen.backends.text import plain, render, table, with_remark, wrapped, wrapped_code
 from modelgen.functions.objects import Function, Model
 
 _SPELLING = {"abs": "fabs", "min": "fmin", "max": "fmax", "pow": "power"}
@@ -80,6 +80,10 @@ class CasadiDialect:
     def store(self, output: str, index: int, text: str) -> str:
         """An element of an output."""
         return _assignment(f"{self.lists[output]}[{index}]", text)
+
+    def remarked(self, statement: str, text: str) -> str:
+        """Behind the statement where there is room, else before it."""
+        return with_remark(statement, f"# {text}", _INDENT)
 
     def guard(self, status: int, text: str) -> str:
         """Nothing: a CasADi function has no status."""

@@ -54,11 +54,14 @@ static const ariane4_free_real_t ddq_m_1[] = {C(0.5625), C(-0.8125), C(-0.1875),
 static const ariane4_free_real_t q_m_2[] = {C(1937.74687), C(2765.28563), C(19238.26562), C(-0.9375)};
 static const ariane4_free_real_t dq_m_2[] = {C(-0.6875), C(-0.0625), C(0.5625), C(-0.8125)};
 static const ariane4_free_real_t ddq_m_2[] = {C(-0.5625), C(0.0625), C(0.6875), C(-0.6875)};
+static const ariane4_free_real_t dt[] = {C(0.001)};
+static const ariane4_free_real_t gain[] = {C(30.0), C(30.0), C(30.0), C(30.0)};
+static const ariane4_free_real_t observer_states[] = {C(0.001), C(0.001), C(0.001), C(0.001)};
 
 static ariane4_free_real_t out[208];
 
 /* Whether a weighted sum of n elements of out, and of their magnitudes, is as it should be. */
-static int agrees(int status, int n, ariane4_free_real_t sum, ariane4_free_real_t magnitude, ariane4_free_real_t allowed)
+static int agrees(ariane4_free_status_t status, int n, ariane4_free_real_t sum, ariane4_free_real_t magnitude, ariane4_free_real_t allowed)
 {
     int i;
     for (i = 0; i < n; ++i) {
@@ -77,7 +80,7 @@ static ariane4_free_real_t either(ariane4_free_real_t in_float, ariane4_free_rea
 
 int main(void)
 {
-    int status;
+    ariane4_free_status_t status;
     status = ariane4_free_inverse_dynamics(q_0, dq_0, ddq_0, parameters, out);
     if (!agrees(status, 4, C(90306.76905320174), C(126264.383416487), either(C(12.6), C(1.26e-06)))) {
         return 1;
@@ -150,251 +153,305 @@ int main(void)
     if (!agrees(status, 2, C(13.763870708457585), C(13.763870708457585), either(C(0.00138), C(1.38e-10)))) {
         return 18;
     }
+    status = ariane4_free_joint_effort(q_0, dq_0, ddq_0, parameters, out);
+    if (!agrees(status, 4, C(3668611.6989431726), C(4668504.551367479), either(C(467), C(4.67e-05)))) {
+        return 19;
+    }
+    status = ariane4_free_joint_effort(q_1, dq_1, ddq_1, parameters, out);
+    if (!agrees(status, 4, C(-1508843.0909122538), C(3199860.7271408644), either(C(320), C(3.2e-05)))) {
+        return 20;
+    }
+    status = ariane4_free_joint_effort(q_2, dq_2, ddq_2, parameters, out);
+    if (!agrees(status, 4, C(1842705.1428285046), C(3866487.5931952326), either(C(387), C(3.87e-05)))) {
+        return 21;
+    }
     status = ariane4_free_regressor(q_0, dq_0, ddq_0, out);
     if (!agrees(status, 136, C(16304258.556241266), C(21084113.99599213), either(C(2.11e+03), C(0.000211)))) {
-        return 19;
+        return 22;
     }
     status = ariane4_free_regressor(q_1, dq_1, ddq_1, out);
     if (!agrees(status, 136, C(-3773367.159080929), C(18229375.87115108), either(C(1.82e+03), C(0.000182)))) {
-        return 20;
+        return 23;
     }
     status = ariane4_free_regressor(q_2, dq_2, ddq_2, out);
     if (!agrees(status, 136, C(-6872300.536841369), C(28646476.82635369), either(C(2.86e+03), C(0.000286)))) {
-        return 21;
+        return 24;
     }
     status = ariane4_free_regressor_standard(q_0, dq_0, ddq_0, out);
     if (!agrees(status, 208, C(16781359.818346366), C(30748615.626087293), either(C(3.07e+03), C(0.000307))))
         {
-        return 22;
+        return 25;
     }
     status = ariane4_free_regressor_standard(q_1, dq_1, ddq_1, out);
     if (!agrees(status, 208, C(-973005.5455247357), C(15298287.841204174), either(C(1.53e+03), C(0.000153))))
         {
-        return 23;
+        return 26;
     }
     status = ariane4_free_regressor_standard(q_2, dq_2, ddq_2, out);
     if (!agrees(status, 208, C(2805611.021845142), C(32839742.718305513), either(C(3.28e+03), C(0.000328)))) {
-        return 24;
+        return 27;
     }
     status = ariane4_free_regressor_packed(q_0, dq_0, ddq_0, out);
     if (!agrees(status, 76, C(8762246.123518795), C(13611615.972354932), either(C(1.36e+03), C(0.000136)))) {
-        return 25;
+        return 28;
     }
     status = ariane4_free_regressor_packed(q_1, dq_1, ddq_1, out);
     if (!agrees(status, 76, C(5457787.083997503), C(9976845.954328911), either(C(998), C(9.98e-05)))) {
-        return 26;
+        return 29;
     }
     status = ariane4_free_regressor_packed(q_2, dq_2, ddq_2, out);
     if (!agrees(status, 76, C(-10517364.353792189), C(25381601.434714887), either(C(2.54e+03), C(0.000254))))
         {
-        return 27;
+        return 30;
     }
     status = ariane4_free_slotine_li_regressor(q_0, dq_0, dq_r_0, ddq_r_0, out);
     if (!agrees(status, 136, C(17306719.997743253), C(22083575.2178836), either(C(2.21e+03), C(0.000221)))) {
-        return 28;
+        return 31;
     }
     status = ariane4_free_slotine_li_regressor(q_1, dq_1, dq_r_1, ddq_r_1, out);
     if (!agrees(status, 136, C(-2555626.507705628), C(20781040.314065084), either(C(2.08e+03), C(0.000208))))
         {
-        return 29;
+        return 32;
     }
     status = ariane4_free_slotine_li_regressor(q_2, dq_2, dq_r_2, ddq_r_2, out);
     if (!agrees(status, 136, C(-1418692.070535614), C(25736374.35422704), either(C(2.57e+03), C(0.000257)))) {
-        return 30;
+        return 33;
     }
     status = ariane4_free_inverse_dynamics_standard(q_0, dq_0, ddq_0, standard_parameters, out);
     if (!agrees(status, 4, C(90306.76905320174), C(126264.383416487), either(C(12.6), C(1.26e-06)))) {
-        return 31;
+        return 34;
     }
     status = ariane4_free_inverse_dynamics_standard(q_1, dq_1, ddq_1, standard_parameters, out);
     if (!agrees(status, 4, C(-64294.8251181615), C(98466.55979054587), either(C(9.85), C(9.85e-07)))) {
-        return 32;
+        return 35;
     }
     status = ariane4_free_inverse_dynamics_standard(q_2, dq_2, ddq_2, standard_parameters, out);
     if (!agrees(status, 4, C(36647.05893057939), C(97154.08599654301), either(C(9.72), C(9.72e-07)))) {
-        return 33;
+        return 36;
     }
     status = ariane4_free_gravity_standard(q_0, standard_parameters, out);
     if (!agrees(status, 4, C(-0.4540975531976997), C(3.036490550183933), either(C(0.000304), C(3.04e-11)))) {
-        return 34;
+        return 37;
     }
     status = ariane4_free_gravity_standard(q_1, standard_parameters, out);
     if (!agrees(status, 4, C(0.9869708392098009), C(0.9869708392098009), either(C(9.87e-05), C(9.87e-12)))) {
-        return 35;
+        return 38;
     }
     status = ariane4_free_gravity_standard(q_2, standard_parameters, out);
     if (!agrees(status, 4, C(2.2564192780353984), C(2.2564192780353984), either(C(0.000226), C(2.26e-11)))) {
-        return 36;
+        return 39;
     }
     status = ariane4_free_bias_standard(q_0, dq_0, standard_parameters, out);
     if (!agrees(status, 4, C(90307.34794703631), C(126263.57924297419), either(C(12.6), C(1.26e-06)))) {
-        return 37;
+        return 40;
     }
     status = ariane4_free_bias_standard(q_1, dq_1, standard_parameters, out);
     if (!agrees(status, 4, C(-64294.96188367086), C(98466.30241688965), either(C(9.85), C(9.85e-07)))) {
-        return 38;
+        return 41;
     }
     status = ariane4_free_bias_standard(q_2, dq_2, standard_parameters, out);
     if (!agrees(status, 4, C(36647.73235792882), C(97154.60770655586), either(C(9.72), C(9.72e-07)))) {
-        return 39;
+        return 42;
     }
     status = ariane4_free_mass_matrix_standard(q_0, standard_parameters, out);
     if (!agrees(status, 16, C(25.89986894867085), C(29.10884428707949), either(C(0.00291), C(2.91e-10)))) {
-        return 40;
+        return 43;
     }
     status = ariane4_free_mass_matrix_standard(q_1, standard_parameters, out);
     if (!agrees(status, 16, C(13.774088248107468), C(14.869817414224817), either(C(0.00149), C(1.49e-10)))) {
-        return 41;
+        return 44;
     }
     status = ariane4_free_mass_matrix_standard(q_2, standard_parameters, out);
     if (!agrees(status, 16, C(29.54227434440759), C(33.549271262434345), either(C(0.00335), C(3.35e-10)))) {
-        return 42;
+        return 45;
     }
     status = ariane4_free_forward_dynamics_standard(q_0, dq_0, input_0, standard_parameters, out);
     if (!agrees(status, 4, C(-1810064.9142776874), C(3077965.6378252115), either(C(308), C(3.08e-05)))) {
-        return 43;
+        return 46;
     }
     status = ariane4_free_forward_dynamics_standard(q_1, dq_1, input_1, standard_parameters, out);
     if (!agrees(status, 4, C(996850.2513007715), C(2677130.274875406), either(C(268), C(2.68e-05)))) {
-        return 44;
+        return 47;
     }
     status = ariane4_free_forward_dynamics_standard(q_2, dq_2, input_2, standard_parameters, out);
     if (!agrees(status, 4, C(-386887.0221773895), C(2185021.316189789), either(C(219), C(2.19e-05)))) {
-        return 45;
+        return 48;
     }
     status = ariane4_free_energy_standard(q_0, dq_0, standard_parameters, out, out + 1);
     if (!agrees(status, 2, C(18.148274068750027), C(18.148274068750027), either(C(0.00181), C(1.81e-10)))) {
-        return 46;
+        return 49;
     }
     status = ariane4_free_energy_standard(q_1, dq_1, standard_parameters, out, out + 1);
     if (!agrees(status, 2, C(19.374282046084726), C(19.374282046084726), either(C(0.00194), C(1.94e-10)))) {
-        return 47;
+        return 50;
     }
     status = ariane4_free_energy_standard(q_2, dq_2, standard_parameters, out, out + 1);
     if (!agrees(status, 2, C(10.624670708457584), C(10.624670708457584), either(C(0.00106), C(1.06e-10)))) {
-        return 48;
+        return 51;
+    }
+    status = ariane4_free_joint_effort_standard(q_0, dq_0, ddq_0, standard_parameters, out);
+    if (!agrees(status, 4, C(3668611.6989431726), C(4668504.551367479), either(C(467), C(4.67e-05)))) {
+        return 52;
+    }
+    status = ariane4_free_joint_effort_standard(q_1, dq_1, ddq_1, standard_parameters, out);
+    if (!agrees(status, 4, C(-1508843.0909122538), C(3199860.7271408644), either(C(320), C(3.2e-05)))) {
+        return 53;
+    }
+    status = ariane4_free_joint_effort_standard(q_2, dq_2, ddq_2, standard_parameters, out);
+    if (!agrees(status, 4, C(1842705.1428285046), C(3866487.5931952326), either(C(387), C(3.87e-05)))) {
+        return 54;
     }
     status = ariane4_free_forward_kinematics(q_0, out);
     if (!agrees(status, 64, C(-25.59061595069712), C(93.55126785750852), either(C(0.00936), C(9.36e-10)))) {
-        return 49;
+        return 55;
     }
     status = ariane4_free_forward_kinematics(q_1, out);
     if (!agrees(status, 64, C(1.1825700603993392), C(86.53701610058417), either(C(0.00865), C(8.65e-10)))) {
-        return 50;
+        return 56;
     }
     status = ariane4_free_forward_kinematics(q_2, out);
     if (!agrees(status, 64, C(38.15439980934529), C(92.19718960542865), either(C(0.00922), C(9.22e-10)))) {
-        return 51;
+        return 57;
     }
     status = ariane4_free_jacobian(q_0, out);
     if (!agrees(status, 24, C(-2.1312662574294388), C(31.33226094163691), either(C(0.00313), C(3.13e-10)))) {
-        return 52;
+        return 58;
     }
     status = ariane4_free_jacobian(q_1, out);
     if (!agrees(status, 24, C(-2.6055236086633107), C(30.60272085700534), either(C(0.00306), C(3.06e-10)))) {
-        return 53;
+        return 59;
     }
     status = ariane4_free_jacobian(q_2, out);
     if (!agrees(status, 24, C(12.356751548731166), C(33.55140778257962), either(C(0.00336), C(3.36e-10)))) {
-        return 54;
+        return 60;
     }
     status = ariane4_free_motor_from_joint(q_0, dq_0, ddq_0, out, out + 4, out + 8);
     if (!agrees(status, 12, C(123399.63983068205), C(175048.42161141225), either(C(17.5), C(1.75e-06)))) {
-        return 55;
+        return 61;
     }
     status = ariane4_free_motor_from_joint(q_1, dq_1, ddq_1, out, out + 4, out + 8);
     if (!agrees(status, 12, C(37275.200960335256), C(116922.51752847427), either(C(11.7), C(1.17e-06)))) {
-        return 56;
+        return 62;
     }
     status = ariane4_free_motor_from_joint(q_2, dq_2, ddq_2, out, out + 4, out + 8);
     if (!agrees(status, 12, C(54591.91993581854), C(201887.61085836613), either(C(20.2), C(2.02e-06)))) {
-        return 57;
+        return 63;
     }
     status = ariane4_free_joint_from_motor(q_m_0, dq_m_0, ddq_m_0, out, out + 4, out + 8);
     if (!agrees(status, 12, C(12.213034406940197), C(14.26633019671968), either(C(0.00143), C(1.43e-10)))) {
-        return 58;
+        return 64;
     }
     status = ariane4_free_joint_from_motor(q_m_1, dq_m_1, ddq_m_1, out, out + 4, out + 8);
     if (!agrees(status, 12, C(11.115428137922047), C(11.490725694249434), either(C(0.00115), C(1.15e-10)))) {
-        return 59;
+        return 65;
     }
     status = ariane4_free_joint_from_motor(q_m_2, dq_m_2, ddq_m_2, out, out + 4, out + 8);
     if (!agrees(status, 12, C(10.746546377301033), C(13.414917029118747), either(C(0.00134), C(1.34e-10)))) {
-        return 60;
+        return 66;
     }
     status = ariane4_free_drive_gain(q_0, out);
     if (!agrees(status, 4, C(280.0792957219699), C(280.0792957219699), either(C(0.028), C(2.8e-09)))) {
-        return 61;
+        return 67;
     }
     status = ariane4_free_drive_gain(q_1, out);
     if (!agrees(status, 4, C(256.6789875942374), C(256.6789875942374), either(C(0.0257), C(2.57e-09)))) {
-        return 62;
+        return 68;
     }
     status = ariane4_free_drive_gain(q_2, out);
     if (!agrees(status, 4, C(291.79222097718764), C(291.79222097718764), either(C(0.0292), C(2.92e-09)))) {
-        return 63;
+        return 69;
     }
     status = ariane4_free_inverse_dynamics_derivatives(q_0, dq_0, ddq_0, parameters, out, out + 4, out + 20,
         out + 36);
     if (!agrees(status, 52, C(316869.48470739165), C(694506.7031798847), either(C(69.5), C(6.95e-06)))) {
-        return 64;
+        return 70;
     }
     status = ariane4_free_inverse_dynamics_derivatives(q_1, dq_1, ddq_1, parameters, out, out + 4, out + 20,
         out + 36);
     if (!agrees(status, 52, C(380681.0772424105), C(627198.5287285624), either(C(62.7), C(6.27e-06)))) {
-        return 65;
+        return 71;
     }
     status = ariane4_free_inverse_dynamics_derivatives(q_2, dq_2, ddq_2, parameters, out, out + 4, out + 20,
         out + 36);
     if (!agrees(status, 52, C(615978.0005498894), C(689415.3512117764), either(C(68.9), C(6.89e-06)))) {
-        return 66;
+        return 72;
     }
     status = ariane4_free_forward_dynamics_derivatives(q_0, dq_0, input_0, parameters, out, out + 4, out + 20,
         out + 36);
     if (!agrees(status, 52, C(-4277778.155545524), C(17825386.364720207), either(C(1.78e+03), C(0.000178)))) {
-        return 67;
+        return 73;
     }
     status = ariane4_free_forward_dynamics_derivatives(q_1, dq_1, input_1, parameters, out, out + 4, out + 20,
         out + 36);
     if (!agrees(status, 52, C(-10244446.452655127), C(20551113.790234722), either(C(2.06e+03), C(0.000206))))
         {
-        return 68;
+        return 74;
     }
     status = ariane4_free_forward_dynamics_derivatives(q_2, dq_2, input_2, parameters, out, out + 4, out + 20,
         out + 36);
     if (!agrees(status, 52, C(-7989064.591805646), C(17287016.81223885), either(C(1.73e+03), C(0.000173)))) {
-        return 69;
+        return 75;
     }
     status = ariane4_free_inverse_dynamics_derivatives_standard(q_0, dq_0, ddq_0, standard_parameters, out,
         out + 4, out + 20, out + 36);
     if (!agrees(status, 52, C(316869.48470739165), C(694506.7031798847), either(C(69.5), C(6.95e-06)))) {
-        return 70;
+        return 76;
     }
     status = ariane4_free_inverse_dynamics_derivatives_standard(q_1, dq_1, ddq_1, standard_parameters, out,
         out + 4, out + 20, out + 36);
     if (!agrees(status, 52, C(380681.0772424105), C(627198.5287285624), either(C(62.7), C(6.27e-06)))) {
-        return 71;
+        return 77;
     }
     status = ariane4_free_inverse_dynamics_derivatives_standard(q_2, dq_2, ddq_2, standard_parameters, out,
         out + 4, out + 20, out + 36);
     if (!agrees(status, 52, C(615978.0005498894), C(689415.3512117764), either(C(68.9), C(6.89e-06)))) {
-        return 72;
+        return 78;
     }
     status = ariane4_free_forward_dynamics_derivatives_standard(q_0, dq_0, input_0, standard_parameters, out,
         out + 4, out + 20, out + 36);
     if (!agrees(status, 52, C(-4277778.155545524), C(17825386.364720207), either(C(1.78e+03), C(0.000178)))) {
-        return 73;
+        return 79;
     }
     status = ariane4_free_forward_dynamics_derivatives_standard(q_1, dq_1, input_1, standard_parameters, out,
         out + 4, out + 20, out + 36);
     if (!agrees(status, 52, C(-10244446.452655127), C(20551113.790234722), either(C(2.06e+03), C(0.000206))))
         {
-        return 74;
+        return 80;
     }
     status = ariane4_free_forward_dynamics_derivatives_standard(q_2, dq_2, input_2, standard_parameters, out,
         out + 4, out + 20, out + 36);
     if (!agrees(status, 52, C(-7989064.591805646), C(17287016.81223885), either(C(1.73e+03), C(0.000173)))) {
-        return 75;
+        return 81;
+    }
+    status = ariane4_free_momentum_observer_step(q_0, dq_0, input_0, dt, gain, parameters, observer_states,
+        out, out + 4);
+    if (!agrees(status, 8, C(-3656.868557162064), C(5235.012476818248), either(C(0.524), C(5.24e-08)))) {
+        return 82;
+    }
+    status = ariane4_free_momentum_observer_step(q_1, dq_1, input_1, dt, gain, parameters, observer_states,
+        out, out + 4);
+    if (!agrees(status, 8, C(1524.1898750954779), C(3523.7150068279943), either(C(0.352), C(3.52e-08)))) {
+        return 83;
+    }
+    status = ariane4_free_momentum_observer_step(q_2, dq_2, input_2, dt, gain, parameters, observer_states,
+        out, out + 4);
+    if (!agrees(status, 8, C(-2134.6584656357413), C(4520.227748952446), either(C(0.452), C(4.52e-08)))) {
+        return 84;
+    }
+    status = ariane4_free_momentum_observer_step_standard(q_0, dq_0, input_0, dt, gain, standard_parameters,
+        observer_states, out, out + 4);
+    if (!agrees(status, 8, C(-3656.868557162064), C(5235.012476818248), either(C(0.524), C(5.24e-08)))) {
+        return 85;
+    }
+    status = ariane4_free_momentum_observer_step_standard(q_1, dq_1, input_1, dt, gain, standard_parameters,
+        observer_states, out, out + 4);
+    if (!agrees(status, 8, C(1524.1898750954779), C(3523.7150068279943), either(C(0.352), C(3.52e-08)))) {
+        return 86;
+    }
+    status = ariane4_free_momentum_observer_step_standard(q_2, dq_2, input_2, dt, gain, standard_parameters,
+        observer_states, out, out + 4);
+    if (!agrees(status, 8, C(-2134.6584656357413), C(4520.227748952446), either(C(0.452), C(4.52e-08)))) {
+        return 87;
     }
     return 0;
 }

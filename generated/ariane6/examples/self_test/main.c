@@ -64,11 +64,14 @@ static const ariane6_real_t q_m_2[] = {C(1858.75), C(8121.25), C(14383.75), C(-0
     C(0.3125)};
 static const ariane6_real_t dq_m_2[] = {C(-0.6875), C(-0.0625), C(0.5625), C(-0.8125), C(-0.1875), C(0.4375)};
 static const ariane6_real_t ddq_m_2[] = {C(-0.5625), C(0.0625), C(0.6875), C(-0.6875), C(-0.0625), C(0.5625)};
+static const ariane6_real_t dt[] = {C(0.001)};
+static const ariane6_real_t gain[] = {C(30.0), C(30.0), C(30.0), C(30.0), C(30.0), C(30.0)};
+static const ariane6_real_t observer_states[] = {C(0.001), C(0.001), C(0.001), C(0.001), C(0.001), C(0.001)};
 
 static ariane6_real_t out[468];
 
 /* Whether a weighted sum of n elements of out, and of their magnitudes, is as it should be. */
-static int agrees(int status, int n, ariane6_real_t sum, ariane6_real_t magnitude, ariane6_real_t allowed)
+static int agrees(ariane6_status_t status, int n, ariane6_real_t sum, ariane6_real_t magnitude, ariane6_real_t allowed)
 {
     int i;
     for (i = 0; i < n; ++i) {
@@ -87,7 +90,7 @@ static ariane6_real_t either(ariane6_real_t in_float, ariane6_real_t in_double)
 
 int main(void)
 {
-    int status;
+    ariane6_status_t status;
     status = ariane6_inverse_dynamics(q_0, dq_0, ddq_0, parameters, out);
     if (!agrees(status, 6, C(-3313.3438712462967), C(154109.01447116857), either(C(15.4), C(1.54e-06)))) {
         return 1;
@@ -160,248 +163,302 @@ int main(void)
     if (!agrees(status, 2, C(52.38937437812701), C(52.38937437812701), either(C(0.00524), C(5.24e-10)))) {
         return 18;
     }
+    status = ariane6_joint_effort(q_0, dq_0, ddq_0, parameters, out);
+    if (!agrees(status, 6, C(-303433.0926686307), C(7474599.095176088), either(C(747), C(7.47e-05)))) {
+        return 19;
+    }
+    status = ariane6_joint_effort(q_1, dq_1, ddq_1, parameters, out);
+    if (!agrees(status, 6, C(6441743.0697694495), C(14182199.91774067), either(C(1.42e+03), C(0.000142)))) {
+        return 20;
+    }
+    status = ariane6_joint_effort(q_2, dq_2, ddq_2, parameters, out);
+    if (!agrees(status, 6, C(-5850650.788231431), C(10585136.023556445), either(C(1.06e+03), C(0.000106)))) {
+        return 21;
+    }
     status = ariane6_regressor(q_0, dq_0, ddq_0, out);
     if (!agrees(status, 324, C(6237139.221925807), C(28852500.96896903), either(C(2.89e+03), C(0.000289)))) {
-        return 19;
+        return 22;
     }
     status = ariane6_regressor(q_1, dq_1, ddq_1, out);
     if (!agrees(status, 324, C(23414075.5441784), C(47937009.18517342), either(C(4.79e+03), C(0.000479)))) {
-        return 20;
+        return 23;
     }
     status = ariane6_regressor(q_2, dq_2, ddq_2, out);
     if (!agrees(status, 324, C(-20970492.14501132), C(44970715.33576287), either(C(4.5e+03), C(0.00045)))) {
-        return 21;
+        return 24;
     }
     status = ariane6_regressor_standard(q_0, dq_0, ddq_0, out);
     if (!agrees(status, 468, C(-6927474.355767801), C(32591208.88327088), either(C(3.26e+03), C(0.000326)))) {
-        return 22;
+        return 25;
     }
     status = ariane6_regressor_standard(q_1, dq_1, ddq_1, out);
     if (!agrees(status, 468, C(24526853.296706162), C(47182980.581740655), either(C(4.72e+03), C(0.000472))))
         {
-        return 23;
+        return 26;
     }
     status = ariane6_regressor_standard(q_2, dq_2, ddq_2, out);
     if (!agrees(status, 468, C(-38931449.05525054), C(53761050.93510523), either(C(5.38e+03), C(0.000538)))) {
-        return 24;
+        return 27;
     }
     status = ariane6_regressor_packed(q_0, dq_0, ddq_0, out);
     if (!agrees(status, 159, C(-4161197.087538986), C(21130142.072553724), either(C(2.11e+03), C(0.000211))))
         {
-        return 25;
+        return 28;
     }
     status = ariane6_regressor_packed(q_1, dq_1, ddq_1, out);
     if (!agrees(status, 159, C(45038642.49752207), C(53830427.124818265), either(C(5.38e+03), C(0.000538)))) {
-        return 26;
+        return 29;
     }
     status = ariane6_regressor_packed(q_2, dq_2, ddq_2, out);
     if (!agrees(status, 159, C(-34790168.42612064), C(44773881.227678016), either(C(4.48e+03), C(0.000448))))
         {
-        return 27;
+        return 30;
     }
     status = ariane6_slotine_li_regressor(q_0, dq_0, dq_r_0, ddq_r_0, out);
     if (!agrees(status, 324, C(17944471.883664705), C(36920886.49767463), either(C(3.69e+03), C(0.000369)))) {
-        return 28;
+        return 31;
     }
     status = ariane6_slotine_li_regressor(q_1, dq_1, dq_r_1, ddq_r_1, out);
     if (!agrees(status, 324, C(4965682.928542032), C(45890030.634433225), either(C(4.59e+03), C(0.000459)))) {
-        return 29;
+        return 32;
     }
     status = ariane6_slotine_li_regressor(q_2, dq_2, dq_r_2, ddq_r_2, out);
     if (!agrees(status, 324, C(-6214870.475983336), C(42162022.78951517), either(C(4.22e+03), C(0.000422)))) {
-        return 30;
+        return 33;
     }
     status = ariane6_inverse_dynamics_standard(q_0, dq_0, ddq_0, standard_parameters, out);
     if (!agrees(status, 6, C(-3313.3438712462967), C(154109.01447116857), either(C(15.4), C(1.54e-06)))) {
-        return 31;
+        return 34;
     }
     status = ariane6_inverse_dynamics_standard(q_1, dq_1, ddq_1, standard_parameters, out);
     if (!agrees(status, 6, C(128843.5368656719), C(285594.8741263807), either(C(28.6), C(2.86e-06)))) {
-        return 32;
+        return 35;
     }
     status = ariane6_inverse_dynamics_standard(q_2, dq_2, ddq_2, standard_parameters, out);
     if (!agrees(status, 6, C(-112475.72710473943), C(204009.16380218702), either(C(20.4), C(2.04e-06)))) {
-        return 33;
+        return 36;
     }
     status = ariane6_gravity_standard(q_0, standard_parameters, out);
     if (!agrees(status, 6, C(-3.155420739347408), C(10.87711795049143), either(C(0.00109), C(1.09e-10)))) {
-        return 34;
+        return 37;
     }
     status = ariane6_gravity_standard(q_1, standard_parameters, out);
     if (!agrees(status, 6, C(1.813970398600393), C(7.066088269775448), either(C(0.000707), C(7.07e-11)))) {
-        return 35;
+        return 38;
     }
     status = ariane6_gravity_standard(q_2, standard_parameters, out);
     if (!agrees(status, 6, C(8.347938839444849), C(9.31017042355874), either(C(0.000931), C(9.31e-11)))) {
-        return 36;
+        return 39;
     }
     status = ariane6_bias_standard(q_0, dq_0, standard_parameters, out);
     if (!agrees(status, 6, C(-3312.681144325757), C(154107.27415577733), either(C(15.4), C(1.54e-06)))) {
-        return 37;
+        return 40;
     }
     status = ariane6_bias_standard(q_1, dq_1, standard_parameters, out);
     if (!agrees(status, 6, C(128843.86496821004), C(285593.6018142212), either(C(28.6), C(2.86e-06)))) {
-        return 38;
+        return 41;
     }
     status = ariane6_bias_standard(q_2, dq_2, standard_parameters, out);
     if (!agrees(status, 6, C(-112475.76701424454), C(204008.32689321024), either(C(20.4), C(2.04e-06)))) {
-        return 39;
+        return 42;
     }
     status = ariane6_mass_matrix_standard(q_0, standard_parameters, out);
     if (!agrees(status, 36, C(57.988388432154046), C(93.26729090706333), either(C(0.00933), C(9.33e-10)))) {
-        return 40;
+        return 43;
     }
     status = ariane6_mass_matrix_standard(q_1, standard_parameters, out);
     if (!agrees(status, 36, C(41.55086002389135), C(51.93918248514834), either(C(0.00519), C(5.19e-10)))) {
-        return 41;
+        return 44;
     }
     status = ariane6_mass_matrix_standard(q_2, standard_parameters, out);
     if (!agrees(status, 36, C(51.587015811318516), C(101.63724391038745), either(C(0.0102), C(1.02e-09)))) {
-        return 42;
+        return 45;
     }
     status = ariane6_forward_dynamics_standard(q_0, dq_0, input_0, standard_parameters, out);
     if (!agrees(status, 6, C(-950502.2499511624), C(3794803.3865414136), either(C(379), C(3.79e-05)))) {
-        return 43;
+        return 46;
     }
     status = ariane6_forward_dynamics_standard(q_1, dq_1, input_1, standard_parameters, out);
     if (!agrees(status, 6, C(-4440821.193362216), C(8545148.45566299), either(C(855), C(8.55e-05)))) {
-        return 44;
+        return 47;
     }
     status = ariane6_forward_dynamics_standard(q_2, dq_2, input_2, standard_parameters, out);
     if (!agrees(status, 6, C(2961929.879810064), C(5610885.83850567), either(C(561), C(5.61e-05)))) {
-        return 45;
+        return 48;
     }
     status = ariane6_energy_standard(q_0, dq_0, standard_parameters, out, out + 1);
     if (!agrees(status, 2, C(61.749232717304714), C(61.749232717304714), either(C(0.00617), C(6.17e-10)))) {
-        return 46;
+        return 49;
     }
     status = ariane6_energy_standard(q_1, dq_1, standard_parameters, out, out + 1);
     if (!agrees(status, 2, C(60.97875829216663), C(60.97875829216663), either(C(0.0061), C(6.1e-10)))) {
-        return 47;
+        return 50;
     }
     status = ariane6_energy_standard(q_2, dq_2, standard_parameters, out, out + 1);
     if (!agrees(status, 2, C(49.25017437812702), C(49.25017437812702), either(C(0.00493), C(4.93e-10)))) {
-        return 48;
+        return 51;
+    }
+    status = ariane6_joint_effort_standard(q_0, dq_0, ddq_0, standard_parameters, out);
+    if (!agrees(status, 6, C(-303433.0926686307), C(7474599.095176088), either(C(747), C(7.47e-05)))) {
+        return 52;
+    }
+    status = ariane6_joint_effort_standard(q_1, dq_1, ddq_1, standard_parameters, out);
+    if (!agrees(status, 6, C(6441743.0697694495), C(14182199.91774067), either(C(1.42e+03), C(0.000142)))) {
+        return 53;
+    }
+    status = ariane6_joint_effort_standard(q_2, dq_2, ddq_2, standard_parameters, out);
+    if (!agrees(status, 6, C(-5850650.788231431), C(10585136.023556445), either(C(1.06e+03), C(0.000106)))) {
+        return 54;
     }
     status = ariane6_forward_kinematics(q_0, out);
     if (!agrees(status, 96, C(-2.6454128297336434), C(168.01402040665408), either(C(0.0168), C(1.68e-09)))) {
-        return 49;
+        return 55;
     }
     status = ariane6_forward_kinematics(q_1, out);
     if (!agrees(status, 96, C(43.16162127579249), C(136.72182770361135), either(C(0.0137), C(1.37e-09)))) {
-        return 50;
+        return 56;
     }
     status = ariane6_forward_kinematics(q_2, out);
     if (!agrees(status, 96, C(77.9979657994984), C(167.17571784261656), either(C(0.0167), C(1.67e-09)))) {
-        return 51;
+        return 57;
     }
     status = ariane6_jacobian(q_0, out);
     if (!agrees(status, 36, C(7.238349699652285), C(59.43673540277912), either(C(0.00594), C(5.94e-10)))) {
-        return 52;
+        return 58;
     }
     status = ariane6_jacobian(q_1, out);
     if (!agrees(status, 36, C(10.310509378435256), C(46.58981044478609), either(C(0.00466), C(4.66e-10)))) {
-        return 53;
+        return 59;
     }
     status = ariane6_jacobian(q_2, out);
     if (!agrees(status, 36, C(18.03813607327709), C(56.167343888030764), either(C(0.00562), C(5.62e-10)))) {
-        return 54;
+        return 60;
     }
     status = ariane6_motor_from_joint(q_0, dq_0, ddq_0, out, out + 6, out + 12);
     if (!agrees(status, 18, C(47509.245158836035), C(217887.09301298612), either(C(21.8), C(2.18e-06)))) {
-        return 55;
+        return 61;
     }
     status = ariane6_motor_from_joint(q_1, dq_1, ddq_1, out, out + 6, out + 12);
     if (!agrees(status, 18, C(271222.44679896487), C(309286.11989383434), either(C(30.9), C(3.09e-06)))) {
-        return 56;
+        return 62;
     }
     status = ariane6_motor_from_joint(q_2, dq_2, ddq_2, out, out + 6, out + 12);
     if (!agrees(status, 18, C(-68781.53715425557), C(283522.2335657649), either(C(28.4), C(2.84e-06)))) {
-        return 57;
+        return 63;
     }
     status = ariane6_joint_from_motor(q_m_0, dq_m_0, ddq_m_0, out, out + 6, out + 12);
     if (!agrees(status, 18, C(12.046898012936273), C(13.612581419259563), either(C(0.00136), C(1.36e-10)))) {
-        return 58;
+        return 64;
     }
     status = ariane6_joint_from_motor(q_m_1, dq_m_1, ddq_m_1, out, out + 6, out + 12);
     if (!agrees(status, 18, C(15.61769035694876), C(15.755758201253308), either(C(0.00158), C(1.58e-10)))) {
-        return 59;
+        return 65;
     }
     status = ariane6_joint_from_motor(q_m_2, dq_m_2, ddq_m_2, out, out + 6, out + 12);
     if (!agrees(status, 18, C(9.789716220782312), C(13.99499953043402), either(C(0.0014), C(1.4e-10)))) {
-        return 60;
+        return 66;
     }
     status = ariane6_drive_gain(q_0, out);
     if (!agrees(status, 6, C(627.018649566859), C(627.018649566859), either(C(0.0627), C(6.27e-09)))) {
-        return 61;
+        return 67;
     }
     status = ariane6_drive_gain(q_1, out);
     if (!agrees(status, 6, C(529.2671532865187), C(529.2671532865187), either(C(0.0529), C(5.29e-09)))) {
-        return 62;
+        return 68;
     }
     status = ariane6_drive_gain(q_2, out);
     if (!agrees(status, 6, C(610.00251939782), C(610.00251939782), either(C(0.061), C(6.1e-09)))) {
-        return 63;
+        return 69;
     }
     status = ariane6_inverse_dynamics_derivatives(q_0, dq_0, ddq_0, parameters, out, out + 6, out + 42, out
         + 78);
     if (!agrees(status, 114, C(-8300.31354722651), C(571613.88502522), either(C(57.2), C(5.72e-06)))) {
-        return 64;
+        return 70;
     }
     status = ariane6_inverse_dynamics_derivatives(q_1, dq_1, ddq_1, parameters, out, out + 6, out + 42, out
         + 78);
     if (!agrees(status, 114, C(-134382.17740631834), C(913711.1659808214), either(C(91.4), C(9.14e-06)))) {
-        return 65;
+        return 71;
     }
     status = ariane6_inverse_dynamics_derivatives(q_2, dq_2, ddq_2, parameters, out, out + 6, out + 42, out
         + 78);
     if (!agrees(status, 114, C(227221.37715682562), C(705201.2985757905), either(C(70.5), C(7.05e-06)))) {
-        return 66;
+        return 72;
     }
     status = ariane6_forward_dynamics_derivatives(q_0, dq_0, input_0, parameters, out, out + 6, out + 42, out
         + 78);
     if (!agrees(status, 114, C(314216.71849419794), C(20902704.53717319), either(C(2.09e+03), C(0.000209)))) {
-        return 67;
+        return 73;
     }
     status = ariane6_forward_dynamics_derivatives(q_1, dq_1, input_1, parameters, out, out + 6, out + 42, out
         + 78);
     if (!agrees(status, 114, C(4592091.604899412), C(30898468.326984376), either(C(3.09e+03), C(0.000309)))) {
-        return 68;
+        return 74;
     }
     status = ariane6_forward_dynamics_derivatives(q_2, dq_2, input_2, parameters, out, out + 6, out + 42, out
         + 78);
     if (!agrees(status, 114, C(1609948.7868799174), C(22022613.023017548), either(C(2.2e+03), C(0.00022)))) {
-        return 69;
+        return 75;
     }
     status = ariane6_inverse_dynamics_derivatives_standard(q_0, dq_0, ddq_0, standard_parameters, out, out
         + 6, out + 42, out + 78);
     if (!agrees(status, 114, C(-8300.31354722651), C(571613.88502522), either(C(57.2), C(5.72e-06)))) {
-        return 70;
+        return 76;
     }
     status = ariane6_inverse_dynamics_derivatives_standard(q_1, dq_1, ddq_1, standard_parameters, out, out
         + 6, out + 42, out + 78);
     if (!agrees(status, 114, C(-134382.17740631834), C(913711.1659808214), either(C(91.4), C(9.14e-06)))) {
-        return 71;
+        return 77;
     }
     status = ariane6_inverse_dynamics_derivatives_standard(q_2, dq_2, ddq_2, standard_parameters, out, out
         + 6, out + 42, out + 78);
     if (!agrees(status, 114, C(227221.37715682562), C(705201.2985757905), either(C(70.5), C(7.05e-06)))) {
-        return 72;
+        return 78;
     }
     status = ariane6_forward_dynamics_derivatives_standard(q_0, dq_0, input_0, standard_parameters, out, out
         + 6, out + 42, out + 78);
     if (!agrees(status, 114, C(314216.7184941979), C(20902704.53717319), either(C(2.09e+03), C(0.000209)))) {
-        return 73;
+        return 79;
     }
     status = ariane6_forward_dynamics_derivatives_standard(q_1, dq_1, input_1, standard_parameters, out, out
         + 6, out + 42, out + 78);
     if (!agrees(status, 114, C(4592091.604899411), C(30898468.326984372), either(C(3.09e+03), C(0.000309)))) {
-        return 74;
+        return 80;
     }
     status = ariane6_forward_dynamics_derivatives_standard(q_2, dq_2, input_2, standard_parameters, out, out
         + 6, out + 42, out + 78);
     if (!agrees(status, 114, C(1609948.7868799174), C(22022613.023017548), either(C(2.2e+03), C(0.00022)))) {
-        return 75;
+        return 81;
+    }
+    status = ariane6_momentum_observer_step(q_0, dq_0, input_0, dt, gain, parameters, observer_states, out,
+        out + 6);
+    if (!agrees(status, 12, C(-1441.3476618509683), C(9605.37994260675), either(C(0.961), C(9.61e-08)))) {
+        return 82;
+    }
+    status = ariane6_momentum_observer_step(q_1, dq_1, input_1, dt, gain, parameters, observer_states, out,
+        out + 6);
+    if (!agrees(status, 12, C(-6081.570808044235), C(14839.778964732142), either(C(1.48), C(1.48e-07)))) {
+        return 83;
+    }
+    status = ariane6_momentum_observer_step(q_2, dq_2, input_2, dt, gain, parameters, observer_states, out,
+        out + 6);
+    if (!agrees(status, 12, C(3651.736153224929), C(13428.63672577322), either(C(1.34), C(1.34e-07)))) {
+        return 84;
+    }
+    status = ariane6_momentum_observer_step_standard(q_0, dq_0, input_0, dt, gain, standard_parameters,
+        observer_states, out, out + 6);
+    if (!agrees(status, 12, C(-1441.3476618509683), C(9605.37994260675), either(C(0.961), C(9.61e-08)))) {
+        return 85;
+    }
+    status = ariane6_momentum_observer_step_standard(q_1, dq_1, input_1, dt, gain, standard_parameters,
+        observer_states, out, out + 6);
+    if (!agrees(status, 12, C(-6081.570808044235), C(14839.778964732142), either(C(1.48), C(1.48e-07)))) {
+        return 86;
+    }
+    status = ariane6_momentum_observer_step_standard(q_2, dq_2, input_2, dt, gain, standard_parameters,
+        observer_states, out, out + 6);
+    if (!agrees(status, 12, C(3651.7361532249283), C(13428.63672577322), either(C(1.34), C(1.34e-07)))) {
+        return 87;
     }
     return 0;
 }

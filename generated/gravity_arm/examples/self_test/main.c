@@ -49,11 +49,14 @@ static const gravity_arm_real_t ddq_m_1[] = {C(0.5625), C(-0.8125)};
 static const gravity_arm_real_t q_m_2[] = {C(-0.8125), C(-0.1875)};
 static const gravity_arm_real_t dq_m_2[] = {C(-0.6875), C(-0.0625)};
 static const gravity_arm_real_t ddq_m_2[] = {C(-0.5625), C(0.0625)};
+static const gravity_arm_real_t dt[] = {C(0.001)};
+static const gravity_arm_real_t gain[] = {C(30.0), C(30.0)};
+static const gravity_arm_real_t observer_states[] = {C(0.001), C(0.001)};
 
 static gravity_arm_real_t out[48];
 
 /* Whether a weighted sum of n elements of out, and of their magnitudes, is as it should be. */
-static int agrees(int status, int n, gravity_arm_real_t sum, gravity_arm_real_t magnitude, gravity_arm_real_t allowed)
+static int agrees(gravity_arm_status_t status, int n, gravity_arm_real_t sum, gravity_arm_real_t magnitude, gravity_arm_real_t allowed)
 {
     int i;
     for (i = 0; i < n; ++i) {
@@ -72,7 +75,7 @@ static gravity_arm_real_t either(gravity_arm_real_t in_float, gravity_arm_real_t
 
 int main(void)
 {
-    int status;
+    gravity_arm_status_t status;
     status = gravity_arm_inverse_dynamics(q_0, dq_0, ddq_0, parameters, out);
     if (!agrees(status, 2, C(-20.11746548624666), C(20.11746548624666), either(C(0.00201), C(2.01e-10)))) {
         return 1;
@@ -384,6 +387,36 @@ int main(void)
         out + 2, out + 6, out + 10);
     if (!agrees(status, 14, C(294.16739323515316), C(1186.41167155766), either(C(0.405), C(1.19e-08)))) {
         return 75;
+    }
+    status = gravity_arm_momentum_observer_step(q_0, dq_0, input_0, dt, gain, parameters, observer_states,
+        out, out + 2);
+    if (!agrees(status, 4, C(-72.57172038968127), C(72.57172038968127), either(C(0.00726), C(7.26e-10)))) {
+        return 76;
+    }
+    status = gravity_arm_momentum_observer_step(q_1, dq_1, input_1, dt, gain, parameters, observer_states,
+        out, out + 2);
+    if (!agrees(status, 4, C(14.758307108347589), C(14.761326744333948), either(C(0.00148), C(1.48e-10)))) {
+        return 77;
+    }
+    status = gravity_arm_momentum_observer_step(q_2, dq_2, input_2, dt, gain, parameters, observer_states,
+        out, out + 2);
+    if (!agrees(status, 4, C(-102.09550828036956), C(102.09550828036956), either(C(0.0102), C(1.02e-09)))) {
+        return 78;
+    }
+    status = gravity_arm_momentum_observer_step_standard(q_0, dq_0, input_0, dt, gain, standard_parameters,
+        observer_states, out, out + 2);
+    if (!agrees(status, 4, C(-72.5717204089927), C(72.5717204089927), either(C(0.00726), C(7.26e-10)))) {
+        return 79;
+    }
+    status = gravity_arm_momentum_observer_step_standard(q_1, dq_1, input_1, dt, gain, standard_parameters,
+        observer_states, out, out + 2);
+    if (!agrees(status, 4, C(14.758307113614343), C(14.761326749600702), either(C(0.00148), C(1.48e-10)))) {
+        return 80;
+    }
+    status = gravity_arm_momentum_observer_step_standard(q_2, dq_2, input_2, dt, gain, standard_parameters,
+        observer_states, out, out + 2);
+    if (!agrees(status, 4, C(-102.09550830670334), C(102.09550830670334), either(C(0.0102), C(1.02e-09)))) {
+        return 81;
     }
     return 0;
 }

@@ -47,11 +47,14 @@ static const gravity_link1_real_t ddq_m_1[] = {C(0.5625)};
 static const gravity_link1_real_t q_m_2[] = {C(-0.8125)};
 static const gravity_link1_real_t dq_m_2[] = {C(-0.6875)};
 static const gravity_link1_real_t ddq_m_2[] = {C(-0.5625)};
+static const gravity_link1_real_t dt[] = {C(0.001)};
+static const gravity_link1_real_t gain[] = {C(30.0)};
+static const gravity_link1_real_t observer_states[] = {C(0.001)};
 
 static gravity_link1_real_t out[16];
 
 /* Whether a weighted sum of n elements of out, and of their magnitudes, is as it should be. */
-static int agrees(int status, int n, gravity_link1_real_t sum, gravity_link1_real_t magnitude, gravity_link1_real_t allowed)
+static int agrees(gravity_link1_status_t status, int n, gravity_link1_real_t sum, gravity_link1_real_t magnitude, gravity_link1_real_t allowed)
 {
     int i;
     for (i = 0; i < n; ++i) {
@@ -70,7 +73,7 @@ static gravity_link1_real_t either(gravity_link1_real_t in_float, gravity_link1_
 
 int main(void)
 {
-    int status;
+    gravity_link1_status_t status;
     status = gravity_link1_inverse_dynamics(q_0, dq_0, ddq_0, parameters, out);
     if (!agrees(status, 1, C(-2.0628912596005744), C(2.0628912596005744), either(C(0.000206), C(2.06e-11)))) {
         return 1;
@@ -382,6 +385,36 @@ int main(void)
         out + 1, out + 2, out + 3);
     if (!agrees(status, 4, C(108.68387439688581), C(204.52882701671902), either(C(0.0205), C(2.05e-09)))) {
         return 75;
+    }
+    status = gravity_link1_momentum_observer_step(q_0, dq_0, input_0, dt, gain, parameters, observer_states,
+        out, out + 1);
+    if (!agrees(status, 2, C(-1.9144830462403994), C(1.9180169537596006), either(C(0.000192), C(1.92e-11)))) {
+        return 76;
+    }
+    status = gravity_link1_momentum_observer_step(q_1, dq_1, input_1, dt, gain, parameters, observer_states,
+        out, out + 1);
+    if (!agrees(status, 2, C(0.4467998547615462), C(0.4467998547615462), either(C(4.47e-05), C(4.47e-12)))) {
+        return 77;
+    }
+    status = gravity_link1_momentum_observer_step(q_2, dq_2, input_2, dt, gain, parameters, observer_states,
+        out, out + 1);
+    if (!agrees(status, 2, C(-2.5936571364339462), C(2.5936571364339462), either(C(0.000259), C(2.59e-11)))) {
+        return 78;
+    }
+    status = gravity_link1_momentum_observer_step_standard(q_0, dq_0, input_0, dt, gain, standard_parameters,
+        observer_states, out, out + 1);
+    if (!agrees(status, 2, C(-1.9144830462403994), C(1.9180169537596006), either(C(0.000192), C(1.92e-11)))) {
+        return 79;
+    }
+    status = gravity_link1_momentum_observer_step_standard(q_1, dq_1, input_1, dt, gain, standard_parameters,
+        observer_states, out, out + 1);
+    if (!agrees(status, 2, C(0.4467998547615462), C(0.4467998547615462), either(C(4.47e-05), C(4.47e-12)))) {
+        return 80;
+    }
+    status = gravity_link1_momentum_observer_step_standard(q_2, dq_2, input_2, dt, gain, standard_parameters,
+        observer_states, out, out + 1);
+    if (!agrees(status, 2, C(-2.5936571364339462), C(2.5936571364339462), either(C(0.000259), C(2.59e-11)))) {
+        return 81;
     }
     return 0;
 }

@@ -49,11 +49,14 @@ static const gravity_link1_loaded_real_t ddq_m_1[] = {C(0.5625)};
 static const gravity_link1_loaded_real_t q_m_2[] = {C(-0.8125)};
 static const gravity_link1_loaded_real_t dq_m_2[] = {C(-0.6875)};
 static const gravity_link1_loaded_real_t ddq_m_2[] = {C(-0.5625)};
+static const gravity_link1_loaded_real_t dt[] = {C(0.001)};
+static const gravity_link1_loaded_real_t gain[] = {C(30.0)};
+static const gravity_link1_loaded_real_t observer_states[] = {C(0.001)};
 
 static gravity_link1_loaded_real_t out[32];
 
 /* Whether a weighted sum of n elements of out, and of their magnitudes, is as it should be. */
-static int agrees(int status, int n, gravity_link1_loaded_real_t sum, gravity_link1_loaded_real_t magnitude, gravity_link1_loaded_real_t allowed)
+static int agrees(gravity_link1_loaded_status_t status, int n, gravity_link1_loaded_real_t sum, gravity_link1_loaded_real_t magnitude, gravity_link1_loaded_real_t allowed)
 {
     int i;
     for (i = 0; i < n; ++i) {
@@ -72,7 +75,7 @@ static gravity_link1_loaded_real_t either(gravity_link1_loaded_real_t in_float, 
 
 int main(void)
 {
-    int status;
+    gravity_link1_loaded_status_t status;
     status = gravity_link1_loaded_inverse_dynamics(q_0, dq_0, ddq_0, parameters, out);
     if (!agrees(status, 1, C(-15.110297620404403), C(15.110297620404403), either(C(0.00151), C(1.51e-10)))) {
         return 1;
@@ -384,6 +387,36 @@ int main(void)
         standard_parameters, out, out + 1, out + 2, out + 3);
     if (!agrees(status, 4, C(3.4270172524458293), C(34.42279689296853), either(C(0.00344), C(3.44e-10)))) {
         return 75;
+    }
+    status = gravity_link1_loaded_momentum_observer_step(q_0, dq_0, input_0, dt, gain, parameters,
+        observer_states, out, out + 1);
+    if (!agrees(status, 2, C(-36.67865700760347), C(36.67865700760347), either(C(0.00367), C(3.67e-10)))) {
+        return 76;
+    }
+    status = gravity_link1_loaded_momentum_observer_step(q_1, dq_1, input_1, dt, gain, parameters,
+        observer_states, out, out + 1);
+    if (!agrees(status, 2, C(9.928637376261143), C(9.928637376261143), either(C(0.000993), C(9.93e-11)))) {
+        return 77;
+    }
+    status = gravity_link1_loaded_momentum_observer_step(q_2, dq_2, input_2, dt, gain, parameters,
+        observer_states, out, out + 1);
+    if (!agrees(status, 2, C(-50.028094679021216), C(50.028094679021216), either(C(0.005), C(5e-10)))) {
+        return 78;
+    }
+    status = gravity_link1_loaded_momentum_observer_step_standard(q_0, dq_0, input_0, dt, gain,
+        standard_parameters, observer_states, out, out + 1);
+    if (!agrees(status, 2, C(-36.6786570204799), C(36.6786570204799), either(C(0.00367), C(3.67e-10)))) {
+        return 79;
+    }
+    status = gravity_link1_loaded_momentum_observer_step_standard(q_1, dq_1, input_1, dt, gain,
+        standard_parameters, observer_states, out, out + 1);
+    if (!agrees(status, 2, C(9.928637379772898), C(9.928637379772898), either(C(0.000993), C(9.93e-11)))) {
+        return 80;
+    }
+    status = gravity_link1_loaded_momentum_observer_step_standard(q_2, dq_2, input_2, dt, gain,
+        standard_parameters, observer_states, out, out + 1);
+    if (!agrees(status, 2, C(-50.028094696579984), C(50.028094696579984), either(C(0.005), C(5e-10)))) {
+        return 81;
     }
     return 0;
 }

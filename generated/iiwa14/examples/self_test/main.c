@@ -88,11 +88,15 @@ static const iiwa14_real_t dq_m_2[] = {C(-0.6875), C(-0.0625), C(0.5625), C(-0.8
     C(-0.9375)};
 static const iiwa14_real_t ddq_m_2[] = {C(-0.5625), C(0.0625), C(0.6875), C(-0.6875), C(-0.0625), C(0.5625),
     C(-0.8125)};
+static const iiwa14_real_t dt[] = {C(0.001)};
+static const iiwa14_real_t gain[] = {C(30.0), C(30.0), C(30.0), C(30.0), C(30.0), C(30.0), C(30.0)};
+static const iiwa14_real_t observer_states[] = {C(0.001), C(0.001), C(0.001), C(0.001), C(0.001), C(0.001),
+    C(0.001)};
 
 static iiwa14_real_t out[637];
 
 /* Whether a weighted sum of n elements of out, and of their magnitudes, is as it should be. */
-static int agrees(int status, int n, iiwa14_real_t sum, iiwa14_real_t magnitude, iiwa14_real_t allowed)
+static int agrees(iiwa14_status_t status, int n, iiwa14_real_t sum, iiwa14_real_t magnitude, iiwa14_real_t allowed)
 {
     int i;
     for (i = 0; i < n; ++i) {
@@ -111,7 +115,7 @@ static iiwa14_real_t either(iiwa14_real_t in_float, iiwa14_real_t in_double)
 
 int main(void)
 {
-    int status;
+    iiwa14_status_t status;
     status = iiwa14_inverse_dynamics(q_0, dq_0, ddq_0, parameters, out);
     if (!agrees(status, 7, C(-261.55137681222726), C(598.5573374190365), either(C(0.0599), C(5.99e-09)))) {
         return 1;
@@ -184,245 +188,299 @@ int main(void)
     if (!agrees(status, 2, C(24.698489059397794), C(24.698489059397794), either(C(0.00247), C(2.47e-10)))) {
         return 18;
     }
+    status = iiwa14_joint_effort(q_0, dq_0, ddq_0, parameters, out);
+    if (!agrees(status, 7, C(-2525.33743164301), C(5855.945008846576), either(C(0.586), C(5.86e-08)))) {
+        return 19;
+    }
+    status = iiwa14_joint_effort(q_1, dq_1, ddq_1, parameters, out);
+    if (!agrees(status, 7, C(-1318.8583210352388), C(3688.398400802856), either(C(0.369), C(3.69e-08)))) {
+        return 20;
+    }
+    status = iiwa14_joint_effort(q_2, dq_2, ddq_2, parameters, out);
+    if (!agrees(status, 7, C(3566.891836992053), C(5289.199555888683), either(C(0.529), C(5.29e-08)))) {
+        return 21;
+    }
     status = iiwa14_regressor(q_0, dq_0, ddq_0, out);
     if (!agrees(status, 434, C(-21831.626929196224), C(68972.08870025232), either(C(6.9), C(6.9e-07)))) {
-        return 19;
+        return 22;
     }
     status = iiwa14_regressor(q_1, dq_1, ddq_1, out);
     if (!agrees(status, 434, C(-13795.820295659936), C(35599.38968276692), either(C(3.56), C(3.56e-07)))) {
-        return 20;
+        return 23;
     }
     status = iiwa14_regressor(q_2, dq_2, ddq_2, out);
     if (!agrees(status, 434, C(48496.34815786659), C(64237.989375036675), either(C(6.42), C(6.42e-07)))) {
-        return 21;
+        return 24;
     }
     status = iiwa14_regressor_standard(q_0, dq_0, ddq_0, out);
     if (!agrees(status, 637, C(-29432.74966833338), C(67886.12630876937), either(C(6.79), C(6.79e-07)))) {
-        return 22;
+        return 25;
     }
     status = iiwa14_regressor_standard(q_1, dq_1, ddq_1, out);
     if (!agrees(status, 637, C(5066.234396303436), C(46161.24938069029), either(C(4.62), C(4.62e-07)))) {
-        return 23;
+        return 26;
     }
     status = iiwa14_regressor_standard(q_2, dq_2, ddq_2, out);
     if (!agrees(status, 637, C(28298.637008570306), C(69497.04663037427), either(C(6.95), C(6.95e-07)))) {
-        return 24;
+        return 27;
     }
     status = iiwa14_regressor_packed(q_0, dq_0, ddq_0, out);
     if (!agrees(status, 207, C(-16270.150089810806), C(57523.082991863026), either(C(5.75), C(5.75e-07)))) {
-        return 25;
+        return 28;
     }
     status = iiwa14_regressor_packed(q_1, dq_1, ddq_1, out);
     if (!agrees(status, 207, C(-8911.595864116578), C(38066.170529583884), either(C(3.81), C(3.81e-07)))) {
-        return 26;
+        return 29;
     }
     status = iiwa14_regressor_packed(q_2, dq_2, ddq_2, out);
     if (!agrees(status, 207, C(20561.060854775384), C(57039.40450508345), either(C(5.7), C(5.7e-07)))) {
-        return 27;
+        return 30;
     }
     status = iiwa14_slotine_li_regressor(q_0, dq_0, dq_r_0, ddq_r_0, out);
     if (!agrees(status, 434, C(-8491.33300806146), C(69835.80593512456), either(C(6.98), C(6.98e-07)))) {
-        return 28;
+        return 31;
     }
     status = iiwa14_slotine_li_regressor(q_1, dq_1, dq_r_1, ddq_r_1, out);
     if (!agrees(status, 434, C(-7968.857475744302), C(35680.070649495334), either(C(3.57), C(3.57e-07)))) {
-        return 29;
+        return 32;
     }
     status = iiwa14_slotine_li_regressor(q_2, dq_2, dq_r_2, ddq_r_2, out);
     if (!agrees(status, 434, C(17029.895174395308), C(66493.01998954217), either(C(6.65), C(6.65e-07)))) {
-        return 30;
+        return 33;
     }
     status = iiwa14_inverse_dynamics_standard(q_0, dq_0, ddq_0, standard_parameters, out);
     if (!agrees(status, 7, C(-261.55137681222726), C(598.5573374190365), either(C(0.0599), C(5.99e-09)))) {
-        return 31;
+        return 34;
     }
     status = iiwa14_inverse_dynamics_standard(q_1, dq_1, ddq_1, standard_parameters, out);
     if (!agrees(status, 7, C(-163.3205518034363), C(377.44818872533307), either(C(0.0377), C(3.77e-09)))) {
-        return 32;
+        return 35;
     }
     status = iiwa14_inverse_dynamics_standard(q_2, dq_2, ddq_2, standard_parameters, out);
     if (!agrees(status, 7, C(367.50199145707273), C(517.1118260325495), either(C(0.0517), C(5.17e-09)))) {
-        return 33;
+        return 36;
     }
     status = iiwa14_gravity_standard(q_0, standard_parameters, out);
     if (!agrees(status, 7, C(5.1739018415720865), C(10.045868429948184), either(C(0.001), C(1e-10)))) {
-        return 34;
+        return 37;
     }
     status = iiwa14_gravity_standard(q_1, standard_parameters, out);
     if (!agrees(status, 7, C(-17.243218039714456), C(17.323661531802056), either(C(0.00173), C(1.73e-10)))) {
-        return 35;
+        return 38;
     }
     status = iiwa14_gravity_standard(q_2, standard_parameters, out);
     if (!agrees(status, 7, C(0.7184209225247913), C(12.457943549627329), either(C(0.00125), C(1.25e-10)))) {
-        return 36;
+        return 39;
     }
     status = iiwa14_bias_standard(q_0, dq_0, standard_parameters, out);
     if (!agrees(status, 7, C(-260.32232258656165), C(594.2446624634356), either(C(0.0594), C(5.94e-09)))) {
-        return 37;
+        return 40;
     }
     status = iiwa14_bias_standard(q_1, dq_1, standard_parameters, out);
     if (!agrees(status, 7, C(-165.05736400203278), C(374.4582529687485), either(C(0.0374), C(3.74e-09)))) {
-        return 38;
+        return 41;
     }
     status = iiwa14_bias_standard(q_2, dq_2, standard_parameters, out);
     if (!agrees(status, 7, C(365.95675332217394), C(514.792177281497), either(C(0.0515), C(5.15e-09)))) {
-        return 39;
+        return 42;
     }
     status = iiwa14_mass_matrix_standard(q_0, standard_parameters, out);
     if (!agrees(status, 49, C(70.8830954934191), C(96.07801399727803), either(C(0.00961), C(9.61e-10)))) {
-        return 40;
+        return 43;
     }
     status = iiwa14_mass_matrix_standard(q_1, standard_parameters, out);
     if (!agrees(status, 49, C(122.44798786557618), C(126.33637061220956), either(C(0.0126), C(1.26e-09)))) {
-        return 41;
+        return 44;
     }
     status = iiwa14_mass_matrix_standard(q_2, standard_parameters, out);
     if (!agrees(status, 49, C(82.81820936085741), C(103.31787691928399), either(C(0.0103), C(1.03e-09)))) {
-        return 42;
+        return 45;
     }
     status = iiwa14_forward_dynamics_standard(q_0, dq_0, input_0, standard_parameters, out);
     if (!agrees(status, 7, C(887.5469423983102), C(1994.4153295568542), either(C(0.199), C(1.99e-08)))) {
-        return 43;
+        return 46;
     }
     status = iiwa14_forward_dynamics_standard(q_1, dq_1, input_1, standard_parameters, out);
     if (!agrees(status, 7, C(420.8553306218603), C(1719.8572698461571), either(C(0.172), C(1.72e-08)))) {
-        return 44;
+        return 47;
     }
     status = iiwa14_forward_dynamics_standard(q_2, dq_2, input_2, standard_parameters, out);
     if (!agrees(status, 7, C(-1129.0116330262833), C(2060.478521045555), either(C(0.206), C(2.06e-08)))) {
-        return 45;
+        return 48;
     }
     status = iiwa14_energy_standard(q_0, dq_0, standard_parameters, out, out + 1);
     if (!agrees(status, 2, C(157.17030455470464), C(157.17030455470464), either(C(0.0157), C(1.57e-09)))) {
-        return 46;
+        return 49;
     }
     status = iiwa14_energy_standard(q_1, dq_1, standard_parameters, out, out + 1);
     if (!agrees(status, 2, C(109.5175571811968), C(109.5175571811968), either(C(0.011), C(1.1e-09)))) {
-        return 47;
+        return 50;
     }
     status = iiwa14_energy_standard(q_2, dq_2, standard_parameters, out, out + 1);
     if (!agrees(status, 2, C(120.44408905939778), C(120.44408905939778), either(C(0.012), C(1.2e-09)))) {
-        return 48;
+        return 51;
+    }
+    status = iiwa14_joint_effort_standard(q_0, dq_0, ddq_0, standard_parameters, out);
+    if (!agrees(status, 7, C(-2525.33743164301), C(5855.945008846576), either(C(0.586), C(5.86e-08)))) {
+        return 52;
+    }
+    status = iiwa14_joint_effort_standard(q_1, dq_1, ddq_1, standard_parameters, out);
+    if (!agrees(status, 7, C(-1318.8583210352388), C(3688.398400802856), either(C(0.369), C(3.69e-08)))) {
+        return 53;
+    }
+    status = iiwa14_joint_effort_standard(q_2, dq_2, ddq_2, standard_parameters, out);
+    if (!agrees(status, 7, C(3566.891836992053), C(5289.199555888683), either(C(0.529), C(5.29e-08)))) {
+        return 54;
     }
     status = iiwa14_forward_kinematics(q_0, out);
     if (!agrees(status, 112, C(18.79258580156715), C(165.83231791706993), either(C(0.0166), C(1.66e-09)))) {
-        return 49;
+        return 55;
     }
     status = iiwa14_forward_kinematics(q_1, out);
     if (!agrees(status, 112, C(89.41183006351969), C(168.50997957496742), either(C(0.0169), C(1.69e-09)))) {
-        return 50;
+        return 56;
     }
     status = iiwa14_forward_kinematics(q_2, out);
     if (!agrees(status, 112, C(72.37249644546854), C(175.02414852791102), either(C(0.0175), C(1.75e-09)))) {
-        return 51;
+        return 57;
     }
     status = iiwa14_jacobian(q_0, out);
     if (!agrees(status, 42, C(-13.703925281011044), C(49.44251465967632), either(C(0.00494), C(4.94e-10)))) {
-        return 52;
+        return 58;
     }
     status = iiwa14_jacobian(q_1, out);
     if (!agrees(status, 42, C(27.667228410027906), C(45.27424745081352), either(C(0.00453), C(4.53e-10)))) {
-        return 53;
+        return 59;
     }
     status = iiwa14_jacobian(q_2, out);
     if (!agrees(status, 42, C(19.881597356721187), C(51.953229293755555), either(C(0.0052), C(5.2e-10)))) {
-        return 54;
+        return 60;
     }
     status = iiwa14_motor_from_joint(q_0, dq_0, ddq_0, out, out + 7, out + 14);
     if (!agrees(status, 21, C(541.8174000000001), C(11535.0722), either(C(1.15), C(1.15e-07)))) {
-        return 55;
+        return 61;
     }
     status = iiwa14_motor_from_joint(q_1, dq_1, ddq_1, out, out + 7, out + 14);
     if (!agrees(status, 21, C(-2143.0254), C(8032.8722), either(C(0.803), C(8.03e-08)))) {
-        return 56;
+        return 62;
     }
     status = iiwa14_motor_from_joint(q_2, dq_2, ddq_2, out, out + 7, out + 14);
     if (!agrees(status, 21, C(5135.9758), C(10221.3778), either(C(1.02), C(1.02e-07)))) {
-        return 57;
+        return 63;
     }
     status = iiwa14_joint_from_motor(q_m_0, dq_m_0, ddq_m_0, out, out + 7, out + 14);
     if (!agrees(status, 21, C(-0.0011718750000000004), C(0.286328125), either(C(2.86e-05), C(2.86e-12)))) {
-        return 58;
+        return 64;
     }
     status = iiwa14_joint_from_motor(q_m_1, dq_m_1, ddq_m_1, out, out + 7, out + 14);
     if (!agrees(status, 21, C(0.019921875), C(0.291015625), either(C(2.91e-05), C(2.91e-12)))) {
-        return 59;
+        return 65;
     }
     status = iiwa14_joint_from_motor(q_m_2, dq_m_2, ddq_m_2, out, out + 7, out + 14);
     if (!agrees(status, 21, C(-0.058984375000000006), C(0.304296875), either(C(3.04e-05), C(3.04e-12)))) {
-        return 60;
+        return 66;
     }
     status = iiwa14_drive_gain(q_0, out);
     if (!agrees(status, 7, C(304.0), C(304.0), either(C(0.0304), C(3.04e-09)))) {
-        return 61;
+        return 67;
     }
     status = iiwa14_drive_gain(q_1, out);
     if (!agrees(status, 7, C(304.0), C(304.0), either(C(0.0304), C(3.04e-09)))) {
-        return 62;
+        return 68;
     }
     status = iiwa14_drive_gain(q_2, out);
     if (!agrees(status, 7, C(304.0), C(304.0), either(C(0.0304), C(3.04e-09)))) {
-        return 63;
+        return 69;
     }
     status = iiwa14_inverse_dynamics_derivatives(q_0, dq_0, ddq_0, parameters, out, out + 7, out + 56, out
         + 105);
     if (!agrees(status, 154, C(704.4109932976241), C(1593.717932780316), either(C(0.159), C(1.59e-08)))) {
-        return 64;
+        return 70;
     }
     status = iiwa14_inverse_dynamics_derivatives(q_1, dq_1, ddq_1, parameters, out, out + 7, out + 56, out
         + 105);
     if (!agrees(status, 154, C(815.9165536938295), C(1378.461739139742), either(C(0.138), C(1.38e-08)))) {
-        return 65;
+        return 71;
     }
     status = iiwa14_inverse_dynamics_derivatives(q_2, dq_2, ddq_2, parameters, out, out + 7, out + 56, out
         + 105);
     if (!agrees(status, 154, C(1329.6254324398244), C(1516.1946070886877), either(C(0.152), C(1.52e-08)))) {
-        return 66;
+        return 72;
     }
     status = iiwa14_forward_dynamics_derivatives(q_0, dq_0, input_0, parameters, out, out + 7, out + 56, out
         + 105);
     if (!agrees(status, 154, C(-2529.376311007538), C(7580.442243150172), either(C(0.758), C(7.58e-08)))) {
-        return 67;
+        return 73;
     }
     status = iiwa14_forward_dynamics_derivatives(q_1, dq_1, input_1, parameters, out, out + 7, out + 56, out
         + 105);
     if (!agrees(status, 154, C(-2756.748994818593), C(7027.9603446712235), either(C(0.703), C(7.03e-08)))) {
-        return 68;
+        return 74;
     }
     status = iiwa14_forward_dynamics_derivatives(q_2, dq_2, input_2, parameters, out, out + 7, out + 56, out
         + 105);
     if (!agrees(status, 154, C(-4176.036987833976), C(7173.105513664446), either(C(0.717), C(7.17e-08)))) {
-        return 69;
+        return 75;
     }
     status = iiwa14_inverse_dynamics_derivatives_standard(q_0, dq_0, ddq_0, standard_parameters, out, out + 7,
         out + 56, out + 105);
     if (!agrees(status, 154, C(704.4109932976241), C(1593.717932780316), either(C(0.159), C(1.59e-08)))) {
-        return 70;
+        return 76;
     }
     status = iiwa14_inverse_dynamics_derivatives_standard(q_1, dq_1, ddq_1, standard_parameters, out, out + 7,
         out + 56, out + 105);
     if (!agrees(status, 154, C(815.9165536938295), C(1378.461739139742), either(C(0.138), C(1.38e-08)))) {
-        return 71;
+        return 77;
     }
     status = iiwa14_inverse_dynamics_derivatives_standard(q_2, dq_2, ddq_2, standard_parameters, out, out + 7,
         out + 56, out + 105);
     if (!agrees(status, 154, C(1329.6254324398244), C(1516.1946070886877), either(C(0.152), C(1.52e-08)))) {
-        return 72;
+        return 78;
     }
     status = iiwa14_forward_dynamics_derivatives_standard(q_0, dq_0, input_0, standard_parameters, out, out
         + 7, out + 56, out + 105);
     if (!agrees(status, 154, C(-2529.376311007538), C(7580.442243150172), either(C(0.758), C(7.58e-08)))) {
-        return 73;
+        return 79;
     }
     status = iiwa14_forward_dynamics_derivatives_standard(q_1, dq_1, input_1, standard_parameters, out, out
         + 7, out + 56, out + 105);
     if (!agrees(status, 154, C(-2756.748994818593), C(7027.9603446712235), either(C(0.703), C(7.03e-08)))) {
-        return 74;
+        return 80;
     }
     status = iiwa14_forward_dynamics_derivatives_standard(q_2, dq_2, input_2, standard_parameters, out, out
         + 7, out + 56, out + 105);
     if (!agrees(status, 154, C(-4176.036987833976), C(7173.105513664446), either(C(0.717), C(7.17e-08)))) {
-        return 75;
+        return 81;
+    }
+    status = iiwa14_momentum_observer_step(q_0, dq_0, input_0, dt, gain, parameters, observer_states, out, out
+        + 7);
+    if (!agrees(status, 14, C(-651.0504950302504), C(1392.1195672708916), either(C(0.139), C(1.39e-08)))) {
+        return 82;
+    }
+    status = iiwa14_momentum_observer_step(q_1, dq_1, input_1, dt, gain, parameters, observer_states, out, out
+        + 7);
+    if (!agrees(status, 14, C(356.4989060577966), C(1100.494946492125), either(C(0.11), C(1.1e-08)))) {
+        return 83;
+    }
+    status = iiwa14_momentum_observer_step(q_2, dq_2, input_2, dt, gain, parameters, observer_states, out, out
+        + 7);
+    if (!agrees(status, 14, C(659.0335416472838), C(1290.002525892159), either(C(0.129), C(1.29e-08)))) {
+        return 84;
+    }
+    status = iiwa14_momentum_observer_step_standard(q_0, dq_0, input_0, dt, gain, standard_parameters,
+        observer_states, out, out + 7);
+    if (!agrees(status, 14, C(-651.0504950302504), C(1392.1195672708916), either(C(0.139), C(1.39e-08)))) {
+        return 85;
+    }
+    status = iiwa14_momentum_observer_step_standard(q_1, dq_1, input_1, dt, gain, standard_parameters,
+        observer_states, out, out + 7);
+    if (!agrees(status, 14, C(356.4989060577966), C(1100.494946492125), either(C(0.11), C(1.1e-08)))) {
+        return 86;
+    }
+    status = iiwa14_momentum_observer_step_standard(q_2, dq_2, input_2, dt, gain, standard_parameters,
+        observer_states, out, out + 7);
+    if (!agrees(status, 14, C(659.0335416472838), C(1290.002525892159), either(C(0.129), C(1.29e-08)))) {
+        return 87;
     }
     return 0;
 }

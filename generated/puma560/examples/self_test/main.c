@@ -64,11 +64,14 @@ static const puma560_real_t ddq_m_1[] = {C(0.5625), C(-0.8125), C(-0.1875), C(0.
 static const puma560_real_t q_m_2[] = {C(-0.8125), C(-0.1875), C(0.4375), C(-0.9375), C(-0.3125), C(0.3125)};
 static const puma560_real_t dq_m_2[] = {C(-0.6875), C(-0.0625), C(0.5625), C(-0.8125), C(-0.1875), C(0.4375)};
 static const puma560_real_t ddq_m_2[] = {C(-0.5625), C(0.0625), C(0.6875), C(-0.6875), C(-0.0625), C(0.5625)};
+static const puma560_real_t dt[] = {C(0.001)};
+static const puma560_real_t gain[] = {C(30.0), C(30.0), C(30.0), C(30.0), C(30.0), C(30.0)};
+static const puma560_real_t observer_states[] = {C(0.001), C(0.001), C(0.001), C(0.001), C(0.001), C(0.001)};
 
 static puma560_real_t out[468];
 
 /* Whether a weighted sum of n elements of out, and of their magnitudes, is as it should be. */
-static int agrees(int status, int n, puma560_real_t sum, puma560_real_t magnitude, puma560_real_t allowed)
+static int agrees(puma560_status_t status, int n, puma560_real_t sum, puma560_real_t magnitude, puma560_real_t allowed)
 {
     int i;
     for (i = 0; i < n; ++i) {
@@ -87,7 +90,7 @@ static puma560_real_t either(puma560_real_t in_float, puma560_real_t in_double)
 
 int main(void)
 {
-    int status;
+    puma560_status_t status;
     status = puma560_inverse_dynamics(q_0, dq_0, ddq_0, parameters, out);
     if (!agrees(status, 6, C(-31.434500512120454), C(127.89214759885195), either(C(0.0128), C(1.28e-09)))) {
         return 1;
@@ -160,248 +163,302 @@ int main(void)
     if (!agrees(status, 2, C(-1.1224430951178923), C(3.676954369136591), either(C(0.000368), C(3.68e-11)))) {
         return 18;
     }
+    status = puma560_joint_effort(q_0, dq_0, ddq_0, parameters, out);
+    if (!agrees(status, 6, C(-61.74994506723055), C(777.0943584633345), either(C(0.0777), C(7.77e-09)))) {
+        return 19;
+    }
+    status = puma560_joint_effort(q_1, dq_1, ddq_1, parameters, out);
+    if (!agrees(status, 6, C(78.25331948520159), C(990.8693708043062), either(C(0.0991), C(9.91e-09)))) {
+        return 20;
+    }
+    status = puma560_joint_effort(q_2, dq_2, ddq_2, parameters, out);
+    if (!agrees(status, 6, C(121.6514520624225), C(762.0683523354993), either(C(0.0762), C(7.62e-09)))) {
+        return 21;
+    }
     status = puma560_regressor(q_0, dq_0, ddq_0, out);
     if (!agrees(status, 312, C(-7203.628290710322), C(14989.971728166833), either(C(1.5), C(1.5e-07)))) {
-        return 19;
+        return 22;
     }
     status = puma560_regressor(q_1, dq_1, ddq_1, out);
     if (!agrees(status, 312, C(7870.9975021642485), C(16181.327503903734), either(C(1.62), C(1.62e-07)))) {
-        return 20;
+        return 23;
     }
     status = puma560_regressor(q_2, dq_2, ddq_2, out);
     if (!agrees(status, 312, C(-4786.48688295694), C(17840.551019543145), either(C(1.78), C(1.78e-07)))) {
-        return 21;
+        return 24;
     }
     status = puma560_regressor_standard(q_0, dq_0, ddq_0, out);
     if (!agrees(status, 468, C(-1159.013342763135), C(16925.569898463335), either(C(1.69), C(1.69e-07)))) {
-        return 22;
+        return 25;
     }
     status = puma560_regressor_standard(q_1, dq_1, ddq_1, out);
     if (!agrees(status, 468, C(3716.8476268218596), C(19105.31832615127), either(C(1.91), C(1.91e-07)))) {
-        return 23;
+        return 26;
     }
     status = puma560_regressor_standard(q_2, dq_2, ddq_2, out);
     if (!agrees(status, 468, C(-1244.120068218817), C(19151.753466984534), either(C(1.92), C(1.92e-07)))) {
-        return 24;
+        return 27;
     }
     status = puma560_regressor_packed(q_0, dq_0, ddq_0, out);
     if (!agrees(status, 155, C(-5330.315444045186), C(15200.993215523617), either(C(1.52), C(1.52e-07)))) {
-        return 25;
+        return 28;
     }
     status = puma560_regressor_packed(q_1, dq_1, ddq_1, out);
     if (!agrees(status, 155, C(3584.8928108503314), C(14831.022193680305), either(C(1.48), C(1.48e-07)))) {
-        return 26;
+        return 29;
     }
     status = puma560_regressor_packed(q_2, dq_2, ddq_2, out);
     if (!agrees(status, 155, C(4320.689184272096), C(16969.36801011277), either(C(1.7), C(1.7e-07)))) {
-        return 27;
+        return 30;
     }
     status = puma560_slotine_li_regressor(q_0, dq_0, dq_r_0, ddq_r_0, out);
     if (!agrees(status, 312, C(-3602.1615915611787), C(15512.899150001584), either(C(1.55), C(1.55e-07)))) {
-        return 28;
+        return 31;
     }
     status = puma560_slotine_li_regressor(q_1, dq_1, dq_r_1, ddq_r_1, out);
     if (!agrees(status, 312, C(1189.8515798215542), C(16963.56120436242), either(C(1.7), C(1.7e-07)))) {
-        return 29;
+        return 32;
     }
     status = puma560_slotine_li_regressor(q_2, dq_2, dq_r_2, ddq_r_2, out);
     if (!agrees(status, 312, C(-1190.3863325937257), C(16423.801972670117), either(C(1.64), C(1.64e-07)))) {
-        return 30;
+        return 33;
     }
     status = puma560_inverse_dynamics_standard(q_0, dq_0, ddq_0, standard_parameters, out);
     if (!agrees(status, 6, C(-31.434500511939067), C(127.89214759903334), either(C(0.0128), C(1.28e-09)))) {
-        return 31;
+        return 34;
     }
     status = puma560_inverse_dynamics_standard(q_1, dq_1, ddq_1, standard_parameters, out);
     if (!agrees(status, 6, C(4.8988945687141445), C(146.4097931996681), either(C(0.0146), C(1.46e-09)))) {
-        return 32;
+        return 35;
     }
     status = puma560_inverse_dynamics_standard(q_2, dq_2, ddq_2, standard_parameters, out);
     if (!agrees(status, 6, C(43.271971112046295), C(126.39115620679588), either(C(0.0126), C(1.26e-09)))) {
-        return 33;
+        return 36;
     }
     status = puma560_gravity_standard(q_0, standard_parameters, out);
     if (!agrees(status, 6, C(-1.9208983156111399), C(5.421352890797772), either(C(0.000542), C(5.42e-11)))) {
-        return 34;
+        return 37;
     }
     status = puma560_gravity_standard(q_1, standard_parameters, out);
     if (!agrees(status, 6, C(-2.1298362444070045), C(4.988426071412102), either(C(0.000499), C(4.99e-11)))) {
-        return 35;
+        return 38;
     }
     status = puma560_gravity_standard(q_2, standard_parameters, out);
     if (!agrees(status, 6, C(0.4272751204038536), C(9.420164865706804), either(C(0.000942), C(9.42e-11)))) {
-        return 36;
+        return 39;
     }
     status = puma560_bias_standard(q_0, dq_0, standard_parameters, out);
     if (!agrees(status, 6, C(-31.123761019448406), C(126.65796372313491), either(C(0.0127), C(1.27e-09)))) {
-        return 37;
+        return 40;
     }
     status = puma560_bias_standard(q_1, dq_1, standard_parameters, out);
     if (!agrees(status, 6, C(4.557400664773835), C(145.2170537210913), either(C(0.0145), C(1.45e-09)))) {
-        return 38;
+        return 41;
     }
     status = puma560_bias_standard(q_2, dq_2, standard_parameters, out);
     if (!agrees(status, 6, C(43.63159021752307), C(126.12112465438992), either(C(0.0126), C(1.26e-09)))) {
-        return 39;
+        return 42;
     }
     status = puma560_mass_matrix_standard(q_0, standard_parameters, out);
     if (!agrees(status, 36, C(13.48591055180028), C(18.843222420107605), either(C(0.00188), C(1.88e-10)))) {
-        return 40;
+        return 43;
     }
     status = puma560_mass_matrix_standard(q_1, standard_parameters, out);
     if (!agrees(status, 36, C(29.135767664049894), C(32.13859163293128), either(C(0.00321), C(3.21e-10)))) {
-        return 41;
+        return 44;
     }
     status = puma560_mass_matrix_standard(q_2, standard_parameters, out);
     if (!agrees(status, 36, C(6.543369603577134), C(18.555588498923083), either(C(0.00186), C(1.86e-10)))) {
-        return 42;
+        return 45;
     }
     status = puma560_forward_dynamics_standard(q_0, dq_0, input_0, standard_parameters, out);
     if (!agrees(status, 6, C(66.56912758967734), C(991.7364935350088), either(C(0.0992), C(9.92e-09)))) {
-        return 43;
+        return 46;
     }
     status = puma560_forward_dynamics_standard(q_1, dq_1, input_1, standard_parameters, out);
     if (!agrees(status, 6, C(167.06659337731864), C(1504.266146096365), either(C(0.15), C(1.5e-08)))) {
-        return 44;
+        return 47;
     }
     status = puma560_forward_dynamics_standard(q_2, dq_2, input_2, standard_parameters, out);
     if (!agrees(status, 6, C(-203.857319288104), C(916.2086137529452), either(C(0.0916), C(9.16e-09)))) {
-        return 45;
+        return 48;
     }
     status = puma560_energy_standard(q_0, dq_0, standard_parameters, out, out + 1);
     if (!agrees(status, 2, C(12.659679452341152), C(12.659679452341152), either(C(0.00127), C(1.27e-10)))) {
-        return 46;
+        return 49;
     }
     status = puma560_energy_standard(q_1, dq_1, standard_parameters, out, out + 1);
     if (!agrees(status, 2, C(-57.01409223184435), C(59.725839693066916), either(C(0.00597), C(5.97e-10)))) {
-        return 47;
+        return 50;
     }
     status = puma560_energy_standard(q_2, dq_2, standard_parameters, out, out + 1);
     if (!agrees(status, 2, C(-4.261643093096943), C(6.816154371157536), either(C(0.000682), C(6.82e-11)))) {
-        return 48;
+        return 51;
+    }
+    status = puma560_joint_effort_standard(q_0, dq_0, ddq_0, standard_parameters, out);
+    if (!agrees(status, 6, C(-61.74994506934861), C(777.0943584660776), either(C(0.0777), C(7.77e-09)))) {
+        return 52;
+    }
+    status = puma560_joint_effort_standard(q_1, dq_1, ddq_1, standard_parameters, out);
+    if (!agrees(status, 6, C(78.2533194912394), C(990.869370810344), either(C(0.0991), C(9.91e-09)))) {
+        return 53;
+    }
+    status = puma560_joint_effort_standard(q_2, dq_2, ddq_2, standard_parameters, out);
+    if (!agrees(status, 6, C(121.6514520579742), C(762.0683523399476), either(C(0.0762), C(7.62e-09)))) {
+        return 54;
     }
     status = puma560_forward_kinematics(q_0, out);
     if (!agrees(status, 96, C(23.745683412698483), C(143.842329310038), either(C(0.0144), C(1.44e-09)))) {
-        return 49;
+        return 55;
     }
     status = puma560_forward_kinematics(q_1, out);
     if (!agrees(status, 96, C(28.968101557557056), C(126.6735277531976), either(C(0.0127), C(1.27e-09)))) {
-        return 50;
+        return 56;
     }
     status = puma560_forward_kinematics(q_2, out);
     if (!agrees(status, 96, C(3.3859194092199236), C(134.66529749679916), either(C(0.0135), C(1.35e-09)))) {
-        return 51;
+        return 57;
     }
     status = puma560_jacobian(q_0, out);
     if (!agrees(status, 36, C(17.93627801454489), C(43.91000146802719), either(C(0.00439), C(4.39e-10)))) {
-        return 52;
+        return 58;
     }
     status = puma560_jacobian(q_1, out);
     if (!agrees(status, 36, C(1.4496307657825005), C(35.528155510648936), either(C(0.00355), C(3.55e-10)))) {
-        return 53;
+        return 59;
     }
     status = puma560_jacobian(q_2, out);
     if (!agrees(status, 36, C(-10.536569359342835), C(35.5499301534913), either(C(0.00355), C(3.55e-10)))) {
-        return 54;
+        return 60;
     }
     status = puma560_motor_from_joint(q_0, dq_0, ddq_0, out, out + 6, out + 12);
     if (!agrees(status, 18, C(-338.46612862399985), C(3757.84225797), either(C(0.376), C(3.76e-08)))) {
-        return 55;
+        return 61;
     }
     status = puma560_motor_from_joint(q_1, dq_1, ddq_1, out, out + 6, out + 12);
     if (!agrees(status, 18, C(-602.9800778440002), C(4161.521890102), either(C(0.416), C(4.16e-08)))) {
-        return 56;
+        return 62;
     }
     status = puma560_motor_from_joint(q_2, dq_2, ddq_2, out, out + 6, out + 12);
     if (!agrees(status, 18, C(23.95360825500011), C(3964.643695957), either(C(0.396), C(3.96e-08)))) {
-        return 57;
+        return 63;
     }
     status = puma560_joint_from_motor(q_m_0, dq_m_0, ddq_m_0, out, out + 6, out + 12);
     if (!agrees(status, 18, C(0.09321612736115333), C(0.4138747344909167), either(C(4.14e-05), C(4.14e-12))))
         {
-        return 58;
+        return 64;
     }
     status = puma560_joint_from_motor(q_m_1, dq_m_1, ddq_m_1, out, out + 6, out + 12);
     if (!agrees(status, 18, C(-0.09791479486092228), C(0.49647885253556023), either(C(4.96e-05),
         C(4.96e-12)))) {
-        return 59;
+        return 65;
     }
     status = puma560_joint_from_motor(q_m_2, dq_m_2, ddq_m_2, out, out + 6, out + 12);
     if (!agrees(status, 18, C(0.03365549738419277), C(0.42658161312647036), either(C(4.27e-05), C(4.27e-12))))
         {
-        return 60;
+        return 66;
     }
     status = puma560_drive_gain(q_0, out);
     if (!agrees(status, 6, C(76.80836200000002), C(179.724162), either(C(0.018), C(1.8e-09)))) {
-        return 61;
+        return 67;
     }
     status = puma560_drive_gain(q_1, out);
     if (!agrees(status, 6, C(76.80836200000002), C(179.724162), either(C(0.018), C(1.8e-09)))) {
-        return 62;
+        return 68;
     }
     status = puma560_drive_gain(q_2, out);
     if (!agrees(status, 6, C(76.80836200000002), C(179.724162), either(C(0.018), C(1.8e-09)))) {
-        return 63;
+        return 69;
     }
     status = puma560_inverse_dynamics_derivatives(q_0, dq_0, ddq_0, parameters, out, out + 6, out + 42, out
         + 78);
     if (!agrees(status, 114, C(-5.906383379744272), C(245.19103234348566), either(C(0.0245), C(2.45e-09)))) {
-        return 64;
+        return 70;
     }
     status = puma560_inverse_dynamics_derivatives(q_1, dq_1, ddq_1, parameters, out, out + 6, out + 42, out
         + 78);
     if (!agrees(status, 114, C(35.50791105157989), C(262.7895833654172), either(C(0.0263), C(2.63e-09)))) {
-        return 65;
+        return 71;
     }
     status = puma560_inverse_dynamics_derivatives(q_2, dq_2, ddq_2, parameters, out, out + 6, out + 42, out
         + 78);
     if (!agrees(status, 114, C(74.10366669223563), C(235.7879850305475), either(C(0.0236), C(2.36e-09)))) {
-        return 66;
+        return 72;
     }
     status = puma560_forward_dynamics_derivatives(q_0, dq_0, input_0, parameters, out, out + 6, out + 42, out
         + 78);
     if (!agrees(status, 114, C(-458.87500558089033), C(3136.6210358085077), either(C(0.314), C(3.14e-08)))) {
-        return 67;
+        return 73;
     }
     status = puma560_forward_dynamics_derivatives(q_1, dq_1, input_1, parameters, out, out + 6, out + 42, out
         + 78);
     if (!agrees(status, 114, C(-55.54488407758773), C(3951.7175647607887), either(C(0.395), C(3.95e-08)))) {
-        return 68;
+        return 74;
     }
     status = puma560_forward_dynamics_derivatives(q_2, dq_2, input_2, parameters, out, out + 6, out + 42, out
         + 78);
     if (!agrees(status, 114, C(-1188.8087461762514), C(3324.406272461405), either(C(0.332), C(3.32e-08)))) {
-        return 69;
+        return 75;
     }
     status = puma560_inverse_dynamics_derivatives_standard(q_0, dq_0, ddq_0, standard_parameters, out, out
         + 6, out + 42, out + 78);
     if (!agrees(status, 114, C(-5.90638337996137), C(245.1910323444688), either(C(0.0245), C(2.45e-09)))) {
-        return 70;
+        return 76;
     }
     status = puma560_inverse_dynamics_derivatives_standard(q_1, dq_1, ddq_1, standard_parameters, out, out
         + 6, out + 42, out + 78);
     if (!agrees(status, 114, C(35.507911051276665), C(262.78958336650174), either(C(0.0263), C(2.63e-09)))) {
-        return 71;
+        return 77;
     }
     status = puma560_inverse_dynamics_derivatives_standard(q_2, dq_2, ddq_2, standard_parameters, out, out
         + 6, out + 42, out + 78);
     if (!agrees(status, 114, C(74.10366669204313), C(235.78798503163085), either(C(0.0236), C(2.36e-09)))) {
-        return 72;
+        return 78;
     }
     status = puma560_forward_dynamics_derivatives_standard(q_0, dq_0, input_0, standard_parameters, out, out
         + 6, out + 42, out + 78);
     if (!agrees(status, 114, C(-458.875005884323), C(3136.6210313386896), either(C(0.314), C(3.14e-08)))) {
-        return 73;
+        return 79;
     }
     status = puma560_forward_dynamics_derivatives_standard(q_1, dq_1, input_1, standard_parameters, out, out
         + 6, out + 42, out + 78);
     if (!agrees(status, 114, C(-55.54488405264137), C(3951.7175629774347), either(C(0.395), C(3.95e-08)))) {
-        return 74;
+        return 80;
     }
     status = puma560_forward_dynamics_derivatives_standard(q_2, dq_2, input_2, standard_parameters, out, out
         + 6, out + 42, out + 78);
     if (!agrees(status, 114, C(-1188.8087457726726), C(3324.406267883281), either(C(0.332), C(3.32e-08)))) {
-        return 75;
+        return 81;
+    }
+    status = puma560_momentum_observer_step(q_0, dq_0, input_0, dt, gain, parameters, observer_states, out,
+        out + 6);
+    if (!agrees(status, 12, C(-164.9448424960949), C(325.55073942504345), either(C(0.0326), C(3.26e-09)))) {
+        return 82;
+    }
+    status = puma560_momentum_observer_step(q_1, dq_1, input_1, dt, gain, parameters, observer_states, out,
+        out + 6);
+    if (!agrees(status, 12, C(190.37943752040593), C(318.13833840894233), either(C(0.0318), C(3.18e-09)))) {
+        return 83;
+    }
+    status = puma560_momentum_observer_step(q_2, dq_2, input_2, dt, gain, parameters, observer_states, out,
+        out + 6);
+    if (!agrees(status, 12, C(-229.2249254172165), C(472.67012525144054), either(C(0.0473), C(4.73e-09)))) {
+        return 84;
+    }
+    status = puma560_momentum_observer_step_standard(q_0, dq_0, input_0, dt, gain, standard_parameters,
+        observer_states, out, out + 6);
+    if (!agrees(status, 12, C(-164.94484312472528), C(325.5507400441018), either(C(0.0326), C(3.26e-09)))) {
+        return 85;
+    }
+    status = puma560_momentum_observer_step_standard(q_1, dq_1, input_1, dt, gain, standard_parameters,
+        observer_states, out, out + 6);
+    if (!agrees(status, 12, C(190.37943775162898), C(318.13833863987304), either(C(0.0318), C(3.18e-09)))) {
+        return 86;
+    }
+    status = puma560_momentum_observer_step_standard(q_2, dq_2, input_2, dt, gain, standard_parameters,
+        observer_states, out, out + 6);
+    if (!agrees(status, 12, C(-229.22492629151927), C(472.6701261254065), either(C(0.0473), C(4.73e-09)))) {
+        return 87;
     }
     return 0;
 }

@@ -58,11 +58,14 @@ static const rx90_real_t ddq_m_1[] = {C(0.5625), C(-0.8125), C(-0.1875), C(0.437
 static const rx90_real_t q_m_2[] = {C(-0.8125), C(-0.1875), C(0.4375), C(-0.9375), C(-0.3125), C(0.3125)};
 static const rx90_real_t dq_m_2[] = {C(-0.6875), C(-0.0625), C(0.5625), C(-0.8125), C(-0.1875), C(0.4375)};
 static const rx90_real_t ddq_m_2[] = {C(-0.5625), C(0.0625), C(0.6875), C(-0.6875), C(-0.0625), C(0.5625)};
+static const rx90_real_t dt[] = {C(0.001)};
+static const rx90_real_t gain[] = {C(30.0), C(30.0), C(30.0), C(30.0), C(30.0), C(30.0)};
+static const rx90_real_t observer_states[] = {C(0.001), C(0.001), C(0.001), C(0.001), C(0.001), C(0.001)};
 
 static rx90_real_t out[468];
 
 /* Whether a weighted sum of n elements of out, and of their magnitudes, is as it should be. */
-static int agrees(int status, int n, rx90_real_t sum, rx90_real_t magnitude, rx90_real_t allowed)
+static int agrees(rx90_status_t status, int n, rx90_real_t sum, rx90_real_t magnitude, rx90_real_t allowed)
 {
     int i;
     for (i = 0; i < n; ++i) {
@@ -81,7 +84,7 @@ static rx90_real_t either(rx90_real_t in_float, rx90_real_t in_double)
 
 int main(void)
 {
-    int status;
+    rx90_status_t status;
     status = rx90_inverse_dynamics(q_0, dq_0, ddq_0, parameters, out);
     if (!agrees(status, 6, C(-4.602217662277935), C(35.62980928722309), either(C(0.00356), C(3.56e-10)))) {
         return 1;
@@ -154,247 +157,301 @@ int main(void)
     if (!agrees(status, 2, C(-24.977274306310463), C(27.869634220525548), either(C(0.00279), C(2.79e-10)))) {
         return 18;
     }
+    status = rx90_joint_effort(q_0, dq_0, ddq_0, parameters, out);
+    if (!agrees(status, 6, C(-6.75485280063595), C(536.1933522919732), either(C(0.0536), C(5.36e-09)))) {
+        return 19;
+    }
+    status = rx90_joint_effort(q_1, dq_1, ddq_1, parameters, out);
+    if (!agrees(status, 6, C(142.4257285653561), C(729.6868575131382), either(C(0.073), C(7.3e-09)))) {
+        return 20;
+    }
+    status = rx90_joint_effort(q_2, dq_2, ddq_2, parameters, out);
+    if (!agrees(status, 6, C(98.66391051215892), C(586.797934655616), either(C(0.0587), C(5.87e-09)))) {
+        return 21;
+    }
     status = rx90_regressor(q_0, dq_0, ddq_0, out);
     if (!agrees(status, 312, C(318.1493036668181), C(5816.381537899893), either(C(0.582), C(5.82e-08)))) {
-        return 19;
+        return 22;
     }
     status = rx90_regressor(q_1, dq_1, ddq_1, out);
     if (!agrees(status, 312, C(1418.7425114302798), C(6533.915966424833), either(C(0.653), C(6.53e-08)))) {
-        return 20;
+        return 23;
     }
     status = rx90_regressor(q_2, dq_2, ddq_2, out);
     if (!agrees(status, 312, C(-717.6741695119972), C(6349.11173654329), either(C(0.635), C(6.35e-08)))) {
-        return 21;
+        return 24;
     }
     status = rx90_regressor_standard(q_0, dq_0, ddq_0, out);
     if (!agrees(status, 468, C(-2125.62047347805), C(6701.384469710912), either(C(0.67), C(6.7e-08)))) {
-        return 22;
+        return 25;
     }
     status = rx90_regressor_standard(q_1, dq_1, ddq_1, out);
     if (!agrees(status, 468, C(2538.46917651356), C(7074.872317004043), either(C(0.707), C(7.07e-08)))) {
-        return 23;
+        return 26;
     }
     status = rx90_regressor_standard(q_2, dq_2, ddq_2, out);
     if (!agrees(status, 468, C(-4100.487047645533), C(8052.400948903832), either(C(0.805), C(8.05e-08)))) {
-        return 24;
+        return 27;
     }
     status = rx90_regressor_packed(q_0, dq_0, ddq_0, out);
     if (!agrees(status, 155, C(-1010.4248877049944), C(6368.2730213024015), either(C(0.637), C(6.37e-08)))) {
-        return 25;
+        return 28;
     }
     status = rx90_regressor_packed(q_1, dq_1, ddq_1, out);
     if (!agrees(status, 155, C(382.81193522684924), C(5167.265092776933), either(C(0.517), C(5.17e-08)))) {
-        return 26;
+        return 29;
     }
     status = rx90_regressor_packed(q_2, dq_2, ddq_2, out);
     if (!agrees(status, 155, C(-423.24683516842225), C(6869.367408878287), either(C(0.687), C(6.87e-08)))) {
-        return 27;
+        return 30;
     }
     status = rx90_slotine_li_regressor(q_0, dq_0, dq_r_0, ddq_r_0, out);
     if (!agrees(status, 312, C(1740.5300814296606), C(6327.383376182013), either(C(0.633), C(6.33e-08)))) {
-        return 28;
+        return 31;
     }
     status = rx90_slotine_li_regressor(q_1, dq_1, dq_r_1, ddq_r_1, out);
     if (!agrees(status, 312, C(332.43171282734846), C(6331.5517596428845), either(C(0.633), C(6.33e-08)))) {
-        return 29;
+        return 32;
     }
     status = rx90_slotine_li_regressor(q_2, dq_2, dq_r_2, ddq_r_2, out);
     if (!agrees(status, 312, C(703.4911063787869), C(6392.4055220105965), either(C(0.639), C(6.39e-08)))) {
-        return 30;
+        return 33;
     }
     status = rx90_inverse_dynamics_standard(q_0, dq_0, ddq_0, standard_parameters, out);
     if (!agrees(status, 6, C(-4.602217662277935), C(35.62980928722309), either(C(0.00356), C(3.56e-10)))) {
-        return 31;
+        return 34;
     }
     status = rx90_inverse_dynamics_standard(q_1, dq_1, ddq_1, standard_parameters, out);
     if (!agrees(status, 6, C(6.908040580297423), C(41.61733231159344), either(C(0.00416), C(4.16e-10)))) {
-        return 32;
+        return 35;
     }
     status = rx90_inverse_dynamics_standard(q_2, dq_2, ddq_2, standard_parameters, out);
     if (!agrees(status, 6, C(9.628805398358812), C(35.53564379730264), either(C(0.00355), C(3.55e-10)))) {
-        return 33;
+        return 36;
     }
     status = rx90_gravity_standard(q_0, standard_parameters, out);
     if (!agrees(status, 6, C(1.262744731143344), C(5.283436858697932), either(C(0.000528), C(5.28e-11)))) {
-        return 34;
+        return 37;
     }
     status = rx90_gravity_standard(q_1, standard_parameters, out);
     if (!agrees(status, 6, C(0.8129169346507427), C(1.300096759601854), either(C(0.00013), C(1.3e-11)))) {
-        return 35;
+        return 38;
     }
     status = rx90_gravity_standard(q_2, standard_parameters, out);
     if (!agrees(status, 6, C(4.358927085775198), C(7.360873079276059), either(C(0.000736), C(7.36e-11)))) {
-        return 36;
+        return 39;
     }
     status = rx90_bias_standard(q_0, dq_0, standard_parameters, out);
     if (!agrees(status, 6, C(-4.5300198290152665), C(35.325507818208976), either(C(0.00353), C(3.53e-10)))) {
-        return 37;
+        return 40;
     }
     status = rx90_bias_standard(q_1, dq_1, standard_parameters, out);
     if (!agrees(status, 6, C(6.179739833700808), C(41.076502888957016), either(C(0.00411), C(4.11e-10)))) {
-        return 38;
+        return 41;
     }
     status = rx90_bias_standard(q_2, dq_2, standard_parameters, out);
     if (!agrees(status, 6, C(9.885566537074522), C(35.5797235485296), either(C(0.00356), C(3.56e-10)))) {
-        return 39;
+        return 42;
     }
     status = rx90_mass_matrix_standard(q_0, standard_parameters, out);
     if (!agrees(status, 36, C(8.33067359752667), C(11.693010445920125), either(C(0.00117), C(1.17e-10)))) {
-        return 40;
+        return 43;
     }
     status = rx90_mass_matrix_standard(q_1, standard_parameters, out);
     if (!agrees(status, 36, C(42.871741311225186), C(42.89897908470687), either(C(0.00429), C(4.29e-10)))) {
-        return 41;
+        return 44;
     }
     status = rx90_mass_matrix_standard(q_2, standard_parameters, out);
     if (!agrees(status, 36, C(10.406126230546054), C(24.81570850831254), either(C(0.00248), C(2.48e-10)))) {
-        return 42;
+        return 45;
     }
     status = rx90_forward_dynamics_standard(q_0, dq_0, input_0, standard_parameters, out);
     if (!agrees(status, 6, C(-104.8060786612036), C(881.9520419986521), either(C(0.0925), C(8.82e-09)))) {
-        return 43;
+        return 46;
     }
     status = rx90_forward_dynamics_standard(q_1, dq_1, input_1, standard_parameters, out);
     if (!agrees(status, 6, C(67.85322057388309), C(1422.5561705079062), either(C(0.416), C(1.42e-08)))) {
-        return 44;
+        return 47;
     }
     status = rx90_forward_dynamics_standard(q_2, dq_2, input_2, standard_parameters, out);
     if (!agrees(status, 6, C(-347.762345928737), C(902.7897228547849), either(C(0.124), C(9.03e-09)))) {
-        return 45;
+        return 48;
     }
     status = rx90_energy_standard(q_0, dq_0, standard_parameters, out, out + 1);
     if (!agrees(status, 2, C(5.544095922207474), C(5.544095922207474), either(C(0.000554), C(5.54e-11)))) {
-        return 46;
+        return 49;
     }
     status = rx90_energy_standard(q_1, dq_1, standard_parameters, out, out + 1);
     if (!agrees(status, 2, C(123.12963783276764), C(123.12963783276764), either(C(0.0123), C(1.23e-09)))) {
-        return 47;
+        return 50;
     }
     status = rx90_energy_standard(q_2, dq_2, standard_parameters, out, out + 1);
     if (!agrees(status, 2, C(-28.11647430631047), C(31.008834220525557), either(C(0.0031), C(3.1e-10)))) {
-        return 48;
+        return 51;
+    }
+    status = rx90_joint_effort_standard(q_0, dq_0, ddq_0, standard_parameters, out);
+    if (!agrees(status, 6, C(-6.754852800635942), C(536.1933522919732), either(C(0.0536), C(5.36e-09)))) {
+        return 52;
+    }
+    status = rx90_joint_effort_standard(q_1, dq_1, ddq_1, standard_parameters, out);
+    if (!agrees(status, 6, C(142.4257285653561), C(729.6868575131382), either(C(0.073), C(7.3e-09)))) {
+        return 53;
+    }
+    status = rx90_joint_effort_standard(q_2, dq_2, ddq_2, standard_parameters, out);
+    if (!agrees(status, 6, C(98.66391051215892), C(586.797934655616), either(C(0.0587), C(5.87e-09)))) {
+        return 54;
     }
     status = rx90_forward_kinematics(q_0, out);
     if (!agrees(status, 96, C(39.706823687579764), C(143.81099053342504), either(C(0.0144), C(1.44e-09)))) {
-        return 49;
+        return 55;
     }
     status = rx90_forward_kinematics(q_1, out);
     if (!agrees(status, 96, C(53.968961733968655), C(120.21826922798996), either(C(0.012), C(1.2e-09)))) {
-        return 50;
+        return 56;
     }
     status = rx90_forward_kinematics(q_2, out);
     if (!agrees(status, 96, C(54.54657890609042), C(138.5040462522003), either(C(0.0139), C(1.39e-09)))) {
-        return 51;
+        return 57;
     }
     status = rx90_jacobian(q_0, out);
     if (!agrees(status, 36, C(16.22074977650833), C(40.559157994573454), either(C(0.00406), C(4.06e-10)))) {
-        return 52;
+        return 58;
     }
     status = rx90_jacobian(q_1, out);
     if (!agrees(status, 36, C(-6.158024272296059), C(30.447277949304045), either(C(0.00304), C(3.04e-10)))) {
-        return 53;
+        return 59;
     }
     status = rx90_jacobian(q_2, out);
     if (!agrees(status, 36, C(31.051714324242596), C(40.87273826629833), either(C(0.00409), C(4.09e-10)))) {
-        return 54;
+        return 60;
     }
     status = rx90_motor_from_joint(q_0, dq_0, ddq_0, out, out + 6, out + 12);
     if (!agrees(status, 18, C(-1434.8199), C(3331.7871), either(C(0.333), C(3.33e-08)))) {
-        return 55;
+        return 61;
     }
     status = rx90_motor_from_joint(q_1, dq_1, ddq_1, out, out + 6, out + 12);
     if (!agrees(status, 18, C(412.6909), C(3584.9521), either(C(0.358), C(3.58e-08)))) {
-        return 56;
+        return 62;
     }
     status = rx90_motor_from_joint(q_2, dq_2, ddq_2, out, out + 6, out + 12);
     if (!agrees(status, 18, C(-454.50590000000005), C(3519.4731), either(C(0.352), C(3.52e-08)))) {
-        return 57;
+        return 63;
     }
     status = rx90_joint_from_motor(q_m_0, dq_m_0, ddq_m_0, out, out + 6, out + 12);
     if (!agrees(status, 18, C(0.2554166666666667), C(0.5904166666666667), either(C(5.9e-05), C(5.9e-12)))) {
-        return 58;
+        return 64;
     }
     status = rx90_joint_from_motor(q_m_1, dq_m_1, ddq_m_1, out, out + 6, out + 12);
     if (!agrees(status, 18, C(-0.07708333333333332), C(0.6645833333333333), either(C(6.65e-05), C(6.65e-12))))
         {
-        return 59;
+        return 65;
     }
     status = rx90_joint_from_motor(q_m_2, dq_m_2, ddq_m_2, out, out + 6, out + 12);
     if (!agrees(status, 18, C(-0.04958333333333334), C(0.5416666666666666), either(C(5.42e-05), C(5.42e-12))))
         {
-        return 60;
+        return 66;
     }
     status = rx90_drive_gain(q_0, out);
     if (!agrees(status, 6, C(306.0), C(306.0), either(C(0.0306), C(3.06e-09)))) {
-        return 61;
+        return 67;
     }
     status = rx90_drive_gain(q_1, out);
     if (!agrees(status, 6, C(306.0), C(306.0), either(C(0.0306), C(3.06e-09)))) {
-        return 62;
+        return 68;
     }
     status = rx90_drive_gain(q_2, out);
     if (!agrees(status, 6, C(306.0), C(306.0), either(C(0.0306), C(3.06e-09)))) {
-        return 63;
+        return 69;
     }
     status = rx90_inverse_dynamics_derivatives(q_0, dq_0, ddq_0, parameters, out, out + 6, out + 42, out
         + 78);
     if (!agrees(status, 114, C(13.894897270431908), C(79.47668707159877), either(C(0.00795), C(7.95e-10)))) {
-        return 64;
+        return 70;
     }
     status = rx90_inverse_dynamics_derivatives(q_1, dq_1, ddq_1, parameters, out, out + 6, out + 42, out
         + 78);
     if (!agrees(status, 114, C(7.421334322099207), C(103.49736902662774), either(C(0.0103), C(1.03e-09)))) {
-        return 65;
+        return 71;
     }
     status = rx90_inverse_dynamics_derivatives(q_2, dq_2, ddq_2, parameters, out, out + 6, out + 42, out
         + 78);
     if (!agrees(status, 114, C(39.975067993561154), C(92.10278186271658), either(C(0.00921), C(9.21e-10)))) {
-        return 66;
+        return 72;
     }
     status = rx90_forward_dynamics_derivatives(q_0, dq_0, input_0, parameters, out, out + 6, out + 42, out
         + 78);
     if (!agrees(status, 114, C(-645.5650375512945), C(4028.192865885194), either(C(0.422), C(4.03e-08)))) {
-        return 67;
+        return 73;
     }
     status = rx90_forward_dynamics_derivatives(q_1, dq_1, input_1, parameters, out, out + 6, out + 42, out
         + 78);
     if (!agrees(status, 114, C(652.9542536357905), C(4623.704792990313), either(C(1.35), C(4.62e-08)))) {
-        return 68;
+        return 74;
     }
     status = rx90_forward_dynamics_derivatives(q_2, dq_2, input_2, parameters, out, out + 6, out + 42, out
         + 78);
     if (!agrees(status, 114, C(-1491.3624065337917), C(4991.136299354668), either(C(0.687), C(4.99e-08)))) {
-        return 69;
+        return 75;
     }
     status = rx90_inverse_dynamics_derivatives_standard(q_0, dq_0, ddq_0, standard_parameters, out, out + 6,
         out + 42, out + 78);
     if (!agrees(status, 114, C(13.89489727043191), C(79.47668707159877), either(C(0.00795), C(7.95e-10)))) {
-        return 70;
+        return 76;
     }
     status = rx90_inverse_dynamics_derivatives_standard(q_1, dq_1, ddq_1, standard_parameters, out, out + 6,
         out + 42, out + 78);
     if (!agrees(status, 114, C(7.421334322099208), C(103.49736902662774), either(C(0.0103), C(1.03e-09)))) {
-        return 71;
+        return 77;
     }
     status = rx90_inverse_dynamics_derivatives_standard(q_2, dq_2, ddq_2, standard_parameters, out, out + 6,
         out + 42, out + 78);
     if (!agrees(status, 114, C(39.975067993561154), C(92.10278186271658), either(C(0.00921), C(9.21e-10)))) {
-        return 72;
+        return 78;
     }
     status = rx90_forward_dynamics_derivatives_standard(q_0, dq_0, input_0, standard_parameters, out, out + 6,
         out + 42, out + 78);
     if (!agrees(status, 114, C(-645.5650375512945), C(4028.1928658851934), either(C(0.422), C(4.03e-08)))) {
-        return 73;
+        return 79;
     }
     status = rx90_forward_dynamics_derivatives_standard(q_1, dq_1, input_1, standard_parameters, out, out + 6,
         out + 42, out + 78);
     if (!agrees(status, 114, C(652.9542536357903), C(4623.704792990313), either(C(1.35), C(4.62e-08)))) {
-        return 74;
+        return 80;
     }
     status = rx90_forward_dynamics_derivatives_standard(q_2, dq_2, input_2, standard_parameters, out, out + 6,
         out + 42, out + 78);
     if (!agrees(status, 114, C(-1491.3624065337917), C(4991.136299354668), either(C(0.687), C(4.99e-08)))) {
-        return 75;
+        return 81;
+    }
+    status = rx90_momentum_observer_step(q_0, dq_0, input_0, dt, gain, parameters, observer_states, out, out
+        + 6);
+    if (!agrees(status, 12, C(-241.0402403673281), C(382.18362955140867), either(C(0.0382), C(3.82e-09)))) {
+        return 82;
+    }
+    status = rx90_momentum_observer_step(q_1, dq_1, input_1, dt, gain, parameters, observer_states, out, out
+        + 6);
+    if (!agrees(status, 12, C(288.8733487947497), C(311.0947688880774), either(C(0.0311), C(3.11e-09)))) {
+        return 83;
+    }
+    status = rx90_momentum_observer_step(q_2, dq_2, input_2, dt, gain, parameters, observer_states, out, out
+        + 6);
+    if (!agrees(status, 12, C(-505.2767047558867), C(589.9518530956028), either(C(0.059), C(5.9e-09)))) {
+        return 84;
+    }
+    status = rx90_momentum_observer_step_standard(q_0, dq_0, input_0, dt, gain, standard_parameters,
+        observer_states, out, out + 6);
+    if (!agrees(status, 12, C(-241.04024036732812), C(382.1836295514087), either(C(0.0382), C(3.82e-09)))) {
+        return 85;
+    }
+    status = rx90_momentum_observer_step_standard(q_1, dq_1, input_1, dt, gain, standard_parameters,
+        observer_states, out, out + 6);
+    if (!agrees(status, 12, C(288.8733487947497), C(311.0947688880774), either(C(0.0311), C(3.11e-09)))) {
+        return 86;
+    }
+    status = rx90_momentum_observer_step_standard(q_2, dq_2, input_2, dt, gain, standard_parameters,
+        observer_states, out, out + 6);
+    if (!agrees(status, 12, C(-505.2767047558868), C(589.9518530956029), either(C(0.059), C(5.9e-09)))) {
+        return 87;
     }
     return 0;
 }

@@ -53,11 +53,14 @@ static const scara_real_t ddq_m_1[] = {C(0.5625), C(-0.8125), C(-0.1875), C(0.43
 static const scara_real_t q_m_2[] = {C(-0.8125), C(-0.1875), C(0.4375), C(-0.9375)};
 static const scara_real_t dq_m_2[] = {C(-0.6875), C(-0.0625), C(0.5625), C(-0.8125)};
 static const scara_real_t ddq_m_2[] = {C(-0.5625), C(0.0625), C(0.6875), C(-0.6875)};
+static const scara_real_t dt[] = {C(0.001)};
+static const scara_real_t gain[] = {C(30.0), C(30.0), C(30.0), C(30.0)};
+static const scara_real_t observer_states[] = {C(0.001), C(0.001), C(0.001), C(0.001)};
 
 static scara_real_t out[208];
 
 /* Whether a weighted sum of n elements of out, and of their magnitudes, is as it should be. */
-static int agrees(int status, int n, scara_real_t sum, scara_real_t magnitude, scara_real_t allowed)
+static int agrees(scara_status_t status, int n, scara_real_t sum, scara_real_t magnitude, scara_real_t allowed)
 {
     int i;
     for (i = 0; i < n; ++i) {
@@ -76,7 +79,7 @@ static scara_real_t either(scara_real_t in_float, scara_real_t in_double)
 
 int main(void)
 {
-    int status;
+    scara_status_t status;
     status = scara_inverse_dynamics(q_0, dq_0, ddq_0, parameters, out);
     if (!agrees(status, 4, C(61.84882941571002), C(92.42112899377113), either(C(0.00924), C(9.24e-10)))) {
         return 1;
@@ -149,247 +152,301 @@ int main(void)
     if (!agrees(status, 2, C(26.771368244698227), C(26.771368244698227), either(C(0.00268), C(2.68e-10)))) {
         return 18;
     }
+    status = scara_joint_effort(q_0, dq_0, ddq_0, parameters, out);
+    if (!agrees(status, 4, C(2326.5600412029416), C(2519.973638885348), either(C(0.252), C(2.52e-08)))) {
+        return 19;
+    }
+    status = scara_joint_effort(q_1, dq_1, ddq_1, parameters, out);
+    if (!agrees(status, 4, C(-2561.6642337002486), C(2734.9450397864066), either(C(0.273), C(2.73e-08)))) {
+        return 20;
+    }
+    status = scara_joint_effort(q_2, dq_2, ddq_2, parameters, out);
+    if (!agrees(status, 4, C(1205.8837078427146), C(1447.1575842139828), either(C(0.145), C(1.45e-08)))) {
+        return 21;
+    }
     status = scara_regressor(q_0, dq_0, ddq_0, out);
     if (!agrees(status, 76, C(14065.343461457305), C(18341.815298317306), either(C(1.83), C(1.83e-07)))) {
-        return 19;
+        return 22;
     }
     status = scara_regressor(q_1, dq_1, ddq_1, out);
     if (!agrees(status, 76, C(-10366.878621613989), C(14069.346549686397), either(C(1.41), C(1.41e-07)))) {
-        return 20;
+        return 23;
     }
     status = scara_regressor(q_2, dq_2, ddq_2, out);
     if (!agrees(status, 76, C(8406.867924626158), C(12910.132357313145), either(C(1.29), C(1.29e-07)))) {
-        return 21;
+        return 24;
     }
     status = scara_regressor_standard(q_0, dq_0, ddq_0, out);
     if (!agrees(status, 208, C(16951.589460961608), C(23424.8133765292), either(C(2.34), C(2.34e-07)))) {
-        return 22;
+        return 25;
     }
     status = scara_regressor_standard(q_1, dq_1, ddq_1, out);
     if (!agrees(status, 208, C(-11805.165308502494), C(18933.847707391138), either(C(1.89), C(1.89e-07)))) {
-        return 23;
+        return 26;
     }
     status = scara_regressor_standard(q_2, dq_2, ddq_2, out);
     if (!agrees(status, 208, C(8527.421691462425), C(17129.82585583646), either(C(1.71), C(1.71e-07)))) {
-        return 24;
+        return 27;
     }
     status = scara_regressor_packed(q_0, dq_0, ddq_0, out);
     if (!agrees(status, 30, C(6283.458556926147), C(10440.05457710297), either(C(1.04), C(1.04e-07)))) {
-        return 25;
+        return 28;
     }
     status = scara_regressor_packed(q_1, dq_1, ddq_1, out);
     if (!agrees(status, 30, C(-3333.210380133847), C(8498.970782827364), either(C(0.85), C(8.5e-08)))) {
-        return 26;
+        return 29;
     }
     status = scara_regressor_packed(q_2, dq_2, ddq_2, out);
     if (!agrees(status, 30, C(4686.919342114891), C(8213.004024079271), either(C(0.821), C(8.21e-08)))) {
-        return 27;
+        return 30;
     }
     status = scara_slotine_li_regressor(q_0, dq_0, dq_r_0, ddq_r_0, out);
     if (!agrees(status, 76, C(18542.40552476961), C(22218.865808707822), either(C(2.22), C(2.22e-07)))) {
-        return 28;
+        return 31;
     }
     status = scara_slotine_li_regressor(q_1, dq_1, dq_r_1, ddq_r_1, out);
     if (!agrees(status, 76, C(-7886.863182591446), C(10314.597094577335), either(C(1.03), C(1.03e-07)))) {
-        return 29;
+        return 32;
     }
     status = scara_slotine_li_regressor(q_2, dq_2, dq_r_2, ddq_r_2, out);
     if (!agrees(status, 76, C(12884.514805660865), C(16410.798644614217), either(C(1.64), C(1.64e-07)))) {
-        return 30;
+        return 33;
     }
     status = scara_inverse_dynamics_standard(q_0, dq_0, ddq_0, standard_parameters, out);
     if (!agrees(status, 4, C(61.84882941571002), C(92.42112899377113), either(C(0.00924), C(9.24e-10)))) {
-        return 31;
+        return 34;
     }
     status = scara_inverse_dynamics_standard(q_1, dq_1, ddq_1, standard_parameters, out);
     if (!agrees(status, 4, C(-75.48838339082599), C(93.10792610952876), either(C(0.00931), C(9.31e-10)))) {
-        return 32;
+        return 35;
     }
     status = scara_inverse_dynamics_standard(q_2, dq_2, ddq_2, standard_parameters, out);
     if (!agrees(status, 4, C(44.87497709115587), C(62.033426190380005), either(C(0.0062), C(6.2e-10)))) {
-        return 33;
+        return 36;
     }
     status = scara_gravity_standard(q_0, standard_parameters, out);
     if (!agrees(status, 4, C(-3.747143980155584), C(3.747143980155584), either(C(0.000375), C(3.75e-11)))) {
-        return 34;
+        return 37;
     }
     status = scara_gravity_standard(q_1, standard_parameters, out);
     if (!agrees(status, 4, C(-3.747143980155584), C(3.747143980155584), either(C(0.000375), C(3.75e-11)))) {
-        return 35;
+        return 38;
     }
     status = scara_gravity_standard(q_2, standard_parameters, out);
     if (!agrees(status, 4, C(-3.747143980155584), C(3.747143980155584), either(C(0.000375), C(3.75e-11)))) {
-        return 36;
+        return 39;
     }
     status = scara_bias_standard(q_0, dq_0, standard_parameters, out);
     if (!agrees(status, 4, C(61.16406679220569), C(91.28477333546643), either(C(0.00913), C(9.13e-10)))) {
-        return 37;
+        return 40;
     }
     status = scara_bias_standard(q_1, dq_1, standard_parameters, out);
     if (!agrees(status, 4, C(-74.92162849055971), C(92.51578755773473), either(C(0.00925), C(9.25e-10)))) {
-        return 38;
+        return 41;
     }
     status = scara_bias_standard(q_2, dq_2, standard_parameters, out);
     if (!agrees(status, 4, C(44.43074681568835), C(60.98607745287149), either(C(0.0061), C(6.1e-10)))) {
-        return 39;
+        return 42;
     }
     status = scara_mass_matrix_standard(q_0, standard_parameters, out);
     if (!agrees(status, 16, C(69.61794756454212), C(72.78989016702143), either(C(0.00728), C(7.28e-10)))) {
-        return 40;
+        return 43;
     }
     status = scara_mass_matrix_standard(q_1, standard_parameters, out);
     if (!agrees(status, 16, C(65.39104052471505), C(69.91494620532589), either(C(0.00699), C(6.99e-10)))) {
-        return 41;
+        return 44;
     }
     status = scara_mass_matrix_standard(q_2, standard_parameters, out);
     if (!agrees(status, 16, C(67.8626930591633), C(73.35504700323408), either(C(0.00734), C(7.34e-10)))) {
-        return 42;
+        return 45;
     }
     status = scara_forward_dynamics_standard(q_0, dq_0, input_0, standard_parameters, out);
     if (!agrees(status, 4, C(13.180775923966001), C(466.0841335064804), either(C(0.465), C(4.66e-09)))) {
-        return 43;
+        return 46;
     }
     status = scara_forward_dynamics_standard(q_1, dq_1, input_1, standard_parameters, out);
     if (!agrees(status, 4, C(-136.84113050533864), C(532.3847040874474), either(C(0.588), C(5.32e-09)))) {
-        return 44;
+        return 47;
     }
     status = scara_forward_dynamics_standard(q_2, dq_2, input_2, standard_parameters, out);
     if (!agrees(status, 4, C(-260.583582422161), C(343.9465709689798), either(C(0.377), C(3.44e-09)))) {
-        return 45;
+        return 48;
     }
     status = scara_energy_standard(q_0, dq_0, standard_parameters, out, out + 1);
     if (!agrees(status, 2, C(57.206403277592536), C(57.206403277592536), either(C(0.00572), C(5.72e-10)))) {
-        return 46;
+        return 49;
     }
     status = scara_energy_standard(q_1, dq_1, standard_parameters, out, out + 1);
     if (!agrees(status, 2, C(63.57326763603348), C(63.57326763603348), either(C(0.00636), C(6.36e-10)))) {
-        return 47;
+        return 50;
     }
     status = scara_energy_standard(q_2, dq_2, standard_parameters, out, out + 1);
     if (!agrees(status, 2, C(58.163368244698226), C(58.163368244698226), either(C(0.00582), C(5.82e-10)))) {
-        return 48;
+        return 51;
+    }
+    status = scara_joint_effort_standard(q_0, dq_0, ddq_0, standard_parameters, out);
+    if (!agrees(status, 4, C(2326.5600412029416), C(2519.973638885348), either(C(0.252), C(2.52e-08)))) {
+        return 52;
+    }
+    status = scara_joint_effort_standard(q_1, dq_1, ddq_1, standard_parameters, out);
+    if (!agrees(status, 4, C(-2561.6642337002486), C(2734.9450397864066), either(C(0.273), C(2.73e-08)))) {
+        return 53;
+    }
+    status = scara_joint_effort_standard(q_2, dq_2, ddq_2, standard_parameters, out);
+    if (!agrees(status, 4, C(1205.8837078427146), C(1447.1575842139828), either(C(0.145), C(1.45e-08)))) {
+        return 54;
     }
     status = scara_forward_kinematics(q_0, out);
     if (!agrees(status, 64, C(-4.0125330216902775), C(86.00321944278897), either(C(0.0086), C(8.6e-10)))) {
-        return 49;
+        return 55;
     }
     status = scara_forward_kinematics(q_1, out);
     if (!agrees(status, 64, C(51.280677495373205), C(82.02634494647491), either(C(0.0082), C(8.2e-10)))) {
-        return 50;
+        return 56;
     }
     status = scara_forward_kinematics(q_2, out);
     if (!agrees(status, 64, C(45.71583238090591), C(84.96026813806917), either(C(0.0085), C(8.5e-10)))) {
-        return 51;
+        return 57;
     }
     status = scara_jacobian(q_0, out);
     if (!agrees(status, 24, C(-0.5752555152338518), C(18.411651294195746), either(C(0.00184), C(1.84e-10)))) {
-        return 52;
+        return 58;
     }
     status = scara_jacobian(q_1, out);
     if (!agrees(status, 24, C(0.851927518934079), C(17.524196964117255), either(C(0.00175), C(1.75e-10)))) {
-        return 53;
+        return 59;
     }
     status = scara_jacobian(q_2, out);
     if (!agrees(status, 24, C(0.7463026054829438), C(16.981001866368995), either(C(0.0017), C(1.7e-10)))) {
-        return 54;
+        return 60;
     }
     status = scara_motor_from_joint(q_0, dq_0, ddq_0, out, out + 4, out + 8);
     if (!agrees(status, 12, C(1077.003418283229), C(3346.8438182832288), either(C(0.335), C(3.35e-08)))) {
-        return 55;
+        return 61;
     }
     status = scara_motor_from_joint(q_1, dq_1, ddq_1, out, out + 4, out + 8);
     if (!agrees(status, 12, C(-1081.3973421891515), C(2554.9963012692383), either(C(0.255), C(2.55e-08)))) {
-        return 56;
+        return 62;
     }
     status = scara_motor_from_joint(q_2, dq_2, ddq_2, out, out + 4, out + 8);
     if (!agrees(status, 12, C(1086.921979869593), C(2749.609979869593), either(C(0.275), C(2.75e-08)))) {
-        return 57;
+        return 63;
     }
     status = scara_joint_from_motor(q_m_0, dq_m_0, ddq_m_0, out, out + 4, out + 8);
     if (!agrees(status, 12, C(-0.2368318630888641), C(0.39754313691113596), either(C(3.98e-05), C(3.98e-12))))
         {
-        return 58;
+        return 64;
     }
     status = scara_joint_from_motor(q_m_1, dq_m_1, ddq_m_1, out, out + 4, out + 8);
     if (!agrees(status, 12, C(0.07053432983718891), C(0.4200906701628111), either(C(4.2e-05), C(4.2e-12)))) {
-        return 59;
+        return 65;
     }
     status = scara_joint_from_motor(q_m_2, dq_m_2, ddq_m_2, out, out + 4, out + 8);
     if (!agrees(status, 12, C(-0.45297270910529674), C(0.5114022908947032), either(C(5.11e-05), C(5.11e-12))))
         {
-        return 60;
+        return 66;
     }
     status = scara_drive_gain(q_0, out);
     if (!agrees(status, 4, C(138.24777960769381), C(138.24777960769381), either(C(0.0138), C(1.38e-09)))) {
-        return 61;
+        return 67;
     }
     status = scara_drive_gain(q_1, out);
     if (!agrees(status, 4, C(138.24777960769381), C(138.24777960769381), either(C(0.0138), C(1.38e-09)))) {
-        return 62;
+        return 68;
     }
     status = scara_drive_gain(q_2, out);
     if (!agrees(status, 4, C(138.24777960769381), C(138.24777960769381), either(C(0.0138), C(1.38e-09)))) {
-        return 63;
+        return 69;
     }
     status = scara_inverse_dynamics_derivatives(q_0, dq_0, ddq_0, parameters, out, out + 4, out + 20, out
         + 36);
     if (!agrees(status, 52, C(270.0871072700062), C(303.6756488409873), either(C(0.0304), C(3.04e-09)))) {
-        return 64;
+        return 70;
     }
     status = scara_inverse_dynamics_derivatives(q_1, dq_1, ddq_1, parameters, out, out + 4, out + 20, out
         + 36);
     if (!agrees(status, 52, C(132.4329017883183), C(303.11553765183436), either(C(0.0303), C(3.03e-09)))) {
-        return 65;
+        return 71;
     }
     status = scara_inverse_dynamics_derivatives(q_2, dq_2, ddq_2, parameters, out, out + 4, out + 20, out
         + 36);
     if (!agrees(status, 52, C(253.65496556770634), C(273.8643283200555), either(C(0.0274), C(2.74e-09)))) {
-        return 66;
+        return 72;
     }
     status = scara_forward_dynamics_derivatives(q_0, dq_0, input_0, parameters, out, out + 4, out + 20, out
         + 36);
     if (!agrees(status, 52, C(-1187.3702012117924), C(3240.777869525193), either(C(3.23), C(3.24e-08)))) {
-        return 67;
+        return 73;
     }
     status = scara_forward_dynamics_derivatives(q_1, dq_1, input_1, parameters, out, out + 4, out + 20, out
         + 36);
     if (!agrees(status, 52, C(-1432.806786566825), C(3059.735114651573), either(C(3.38), C(3.06e-08)))) {
-        return 68;
+        return 74;
     }
     status = scara_forward_dynamics_derivatives(q_2, dq_2, input_2, parameters, out, out + 4, out + 20, out
         + 36);
     if (!agrees(status, 52, C(-1773.5310282087526), C(3002.83583857077), either(C(3.29), C(3e-08)))) {
-        return 69;
+        return 75;
     }
     status = scara_inverse_dynamics_derivatives_standard(q_0, dq_0, ddq_0, standard_parameters, out, out + 4,
         out + 20, out + 36);
     if (!agrees(status, 52, C(270.0871072700062), C(303.6756488409873), either(C(0.0304), C(3.04e-09)))) {
-        return 70;
+        return 76;
     }
     status = scara_inverse_dynamics_derivatives_standard(q_1, dq_1, ddq_1, standard_parameters, out, out + 4,
         out + 20, out + 36);
     if (!agrees(status, 52, C(132.4329017883183), C(303.11553765183436), either(C(0.0303), C(3.03e-09)))) {
-        return 71;
+        return 77;
     }
     status = scara_inverse_dynamics_derivatives_standard(q_2, dq_2, ddq_2, standard_parameters, out, out + 4,
         out + 20, out + 36);
     if (!agrees(status, 52, C(253.65496556770634), C(273.8643283200555), either(C(0.0274), C(2.74e-09)))) {
-        return 72;
+        return 78;
     }
     status = scara_forward_dynamics_derivatives_standard(q_0, dq_0, input_0, standard_parameters, out, out
         + 4, out + 20, out + 36);
     if (!agrees(status, 52, C(-1187.3702012117924), C(3240.777869525193), either(C(3.23), C(3.24e-08)))) {
-        return 73;
+        return 79;
     }
     status = scara_forward_dynamics_derivatives_standard(q_1, dq_1, input_1, standard_parameters, out, out
         + 4, out + 20, out + 36);
     if (!agrees(status, 52, C(-1432.806786566825), C(3059.735114651573), either(C(3.38), C(3.06e-08)))) {
-        return 74;
+        return 80;
     }
     status = scara_forward_dynamics_derivatives_standard(q_2, dq_2, input_2, standard_parameters, out, out
         + 4, out + 20, out + 36);
     if (!agrees(status, 52, C(-1773.5310282087526), C(3002.8358385707697), either(C(3.29), C(3e-08)))) {
-        return 75;
+        return 81;
+    }
+    status = scara_momentum_observer_step(q_0, dq_0, input_0, dt, gain, parameters, observer_states, out, out
+        + 4);
+    if (!agrees(status, 8, C(1217.7030070427406), C(2058.621739523267), either(C(0.206), C(2.06e-08)))) {
+        return 82;
+    }
+    status = scara_momentum_observer_step(q_1, dq_1, input_1, dt, gain, parameters, observer_states, out, out
+        + 4);
+    if (!agrees(status, 8, C(-1353.259917130639), C(1930.965595480668), either(C(0.193), C(1.93e-08)))) {
+        return 83;
+    }
+    status = scara_momentum_observer_step(q_2, dq_2, input_2, dt, gain, parameters, observer_states, out, out
+        + 4);
+    if (!agrees(status, 8, C(250.6891207986161), C(1586.8980949492322), either(C(0.159), C(1.59e-08)))) {
+        return 84;
+    }
+    status = scara_momentum_observer_step_standard(q_0, dq_0, input_0, dt, gain, standard_parameters,
+        observer_states, out, out + 4);
+    if (!agrees(status, 8, C(1217.7030070427406), C(2058.621739523267), either(C(0.206), C(2.06e-08)))) {
+        return 85;
+    }
+    status = scara_momentum_observer_step_standard(q_1, dq_1, input_1, dt, gain, standard_parameters,
+        observer_states, out, out + 4);
+    if (!agrees(status, 8, C(-1353.259917130639), C(1930.965595480668), either(C(0.193), C(1.93e-08)))) {
+        return 86;
+    }
+    status = scara_momentum_observer_step_standard(q_2, dq_2, input_2, dt, gain, standard_parameters,
+        observer_states, out, out + 4);
+    if (!agrees(status, 8, C(250.6891207986161), C(1586.8980949492325), either(C(0.159), C(1.59e-08)))) {
+        return 87;
     }
     return 0;
 }

@@ -47,11 +47,14 @@ static const screw_axis_real_t ddq_m_1[] = {C(0.5625)};
 static const screw_axis_real_t q_m_2[] = {C(-0.8125)};
 static const screw_axis_real_t dq_m_2[] = {C(-0.6875)};
 static const screw_axis_real_t ddq_m_2[] = {C(-0.5625)};
+static const screw_axis_real_t dt[] = {C(0.001)};
+static const screw_axis_real_t gain[] = {C(30.0)};
+static const screw_axis_real_t observer_states[] = {C(0.001)};
 
 static screw_axis_real_t out[16];
 
 /* Whether a weighted sum of n elements of out, and of their magnitudes, is as it should be. */
-static int agrees(int status, int n, screw_axis_real_t sum, screw_axis_real_t magnitude, screw_axis_real_t allowed)
+static int agrees(screw_axis_status_t status, int n, screw_axis_real_t sum, screw_axis_real_t magnitude, screw_axis_real_t allowed)
 {
     int i;
     for (i = 0; i < n; ++i) {
@@ -70,7 +73,7 @@ static screw_axis_real_t either(screw_axis_real_t in_float, screw_axis_real_t in
 
 int main(void)
 {
-    int status;
+    screw_axis_status_t status;
     status = screw_axis_inverse_dynamics(q_0, dq_0, ddq_0, parameters, out);
     if (!agrees(status, 1, C(-434.8550259043903), C(434.8550259043903), either(C(0.0435), C(4.35e-09)))) {
         return 1;
@@ -143,248 +146,302 @@ int main(void)
     if (!agrees(status, 2, C(70.27456201171874), C(70.27456201171874), either(C(0.00703), C(7.03e-10)))) {
         return 18;
     }
+    status = screw_axis_joint_effort(q_0, dq_0, ddq_0, parameters, out);
+    if (!agrees(status, 1, C(-16393.64825709398), C(16393.64825709398), either(C(1.64), C(1.64e-07)))) {
+        return 19;
+    }
+    status = screw_axis_joint_effort(q_1, dq_1, ddq_1, parameters, out);
+    if (!agrees(status, 1, C(4510.14455828675), C(4510.14455828675), either(C(0.451), C(4.51e-08)))) {
+        return 20;
+    }
+    status = screw_axis_joint_effort(q_2, dq_2, ddq_2, parameters, out);
+    if (!agrees(status, 1, C(-22355.389315247594), C(22355.389315247594), either(C(2.24), C(2.24e-07)))) {
+        return 21;
+    }
     status = screw_axis_regressor(q_0, dq_0, ddq_0, out);
     if (!agrees(status, 3, C(-57695.8802365888), C(57695.8802365888), either(C(5.77), C(5.77e-07)))) {
-        return 19;
+        return 22;
     }
     status = screw_axis_regressor(q_1, dq_1, ddq_1, out);
     if (!agrees(status, 3, C(15807.97155726892), C(15807.97155726892), either(C(1.58), C(1.58e-07)))) {
-        return 20;
+        return 23;
     }
     status = screw_axis_regressor(q_2, dq_2, ddq_2, out);
     if (!agrees(status, 3, C(-78639.83789197671), C(78639.83789197671), either(C(7.86), C(7.86e-07)))) {
-        return 21;
+        return 24;
     }
     status = screw_axis_regressor_standard(q_0, dq_0, ddq_0, out);
     if (!agrees(status, 13, C(-256730.11147216088), C(256730.11147216088), either(C(25.7), C(2.57e-06)))) {
-        return 22;
+        return 25;
     }
     status = screw_axis_regressor_standard(q_1, dq_1, ddq_1, out);
     if (!agrees(status, 13, C(110122.4344102693), C(110122.4344102693), either(C(11), C(1.1e-06)))) {
-        return 23;
+        return 26;
     }
     status = screw_axis_regressor_standard(q_2, dq_2, ddq_2, out);
     if (!agrees(status, 13, C(-361449.88648618857), C(361449.88648618857), either(C(36.1), C(3.61e-06)))) {
-        return 24;
+        return 27;
     }
     status = screw_axis_regressor_packed(q_0, dq_0, ddq_0, out);
     if (!agrees(status, 3, C(-57695.8802365888), C(57695.8802365888), either(C(5.77), C(5.77e-07)))) {
-        return 25;
+        return 28;
     }
     status = screw_axis_regressor_packed(q_1, dq_1, ddq_1, out);
     if (!agrees(status, 3, C(15807.97155726892), C(15807.97155726892), either(C(1.58), C(1.58e-07)))) {
-        return 26;
+        return 29;
     }
     status = screw_axis_regressor_packed(q_2, dq_2, ddq_2, out);
     if (!agrees(status, 3, C(-78639.83789197671), C(78639.83789197671), either(C(7.86), C(7.86e-07)))) {
-        return 27;
+        return 30;
     }
     status = screw_axis_slotine_li_regressor(q_0, dq_0, dq_r_0, ddq_r_0, out);
     if (!agrees(status, 3, C(-57695.87360513284), C(57695.87360513284), either(C(5.77), C(5.77e-07)))) {
-        return 28;
+        return 31;
     }
     status = screw_axis_slotine_li_regressor(q_1, dq_1, dq_r_1, ddq_r_1, out);
     if (!agrees(status, 3, C(15807.978188724883), C(15807.978188724883), either(C(1.58), C(1.58e-07)))) {
-        return 29;
+        return 32;
     }
     status = screw_axis_slotine_li_regressor(q_2, dq_2, dq_r_2, ddq_r_2, out);
     if (!agrees(status, 3, C(-78639.83126052075), C(78639.83126052075), either(C(7.86), C(7.86e-07)))) {
-        return 30;
+        return 33;
     }
     status = screw_axis_inverse_dynamics_standard(q_0, dq_0, ddq_0, standard_parameters, out);
     if (!agrees(status, 1, C(-434.8550259106187), C(434.8550259106187), either(C(0.0435), C(4.35e-09)))) {
-        return 31;
+        return 34;
     }
     status = screw_axis_inverse_dynamics_standard(q_1, dq_1, ddq_1, standard_parameters, out);
     if (!agrees(status, 1, C(119.6353000885184), C(119.6353000885184), either(C(0.012), C(1.2e-09)))) {
-        return 32;
+        return 35;
     }
     status = screw_axis_inverse_dynamics_standard(q_2, dq_2, ddq_2, standard_parameters, out);
     if (!agrees(status, 1, C(-592.9951190532292), C(592.9951190532292), either(C(0.0593), C(5.93e-09)))) {
-        return 33;
+        return 36;
     }
     status = screw_axis_gravity_standard(q_0, standard_parameters, out);
     if (!agrees(status, 1, C(0.0), C(0.0), either(C(1e-10), C(1e-17)))) {
-        return 34;
+        return 37;
     }
     status = screw_axis_gravity_standard(q_1, standard_parameters, out);
     if (!agrees(status, 1, C(0.0), C(0.0), either(C(1e-10), C(1e-17)))) {
-        return 35;
+        return 38;
     }
     status = screw_axis_gravity_standard(q_2, standard_parameters, out);
     if (!agrees(status, 1, C(0.0), C(0.0), either(C(1e-10), C(1e-17)))) {
-        return 36;
+        return 39;
     }
     status = screw_axis_bias_standard(q_0, dq_0, standard_parameters, out);
     if (!agrees(status, 1, C(-432.46898986859657), C(432.46898986859657), either(C(0.0432), C(4.32e-09)))) {
-        return 37;
+        return 40;
     }
     status = screw_axis_bias_standard(q_1, dq_1, standard_parameters, out);
     if (!agrees(status, 1, C(118.30972450961725), C(118.30972450961725), either(C(0.0118), C(1.18e-09)))) {
-        return 38;
+        return 41;
     }
     status = screw_axis_bias_standard(q_2, dq_2, standard_parameters, out);
     if (!agrees(status, 1, C(-589.5486225480862), C(589.5486225480862), either(C(0.059), C(5.9e-09)))) {
-        return 39;
+        return 42;
     }
     status = screw_axis_mass_matrix_standard(q_0, standard_parameters, out);
     if (!agrees(status, 1, C(159.91367041742976), C(159.91367041742976), either(C(0.016), C(1.6e-09)))) {
-        return 40;
+        return 43;
     }
     status = screw_axis_mass_matrix_standard(q_1, standard_parameters, out);
     if (!agrees(status, 1, C(159.91367041742976), C(159.91367041742976), either(C(0.016), C(1.6e-09)))) {
-        return 41;
+        return 44;
     }
     status = screw_axis_mass_matrix_standard(q_2, standard_parameters, out);
     if (!agrees(status, 1, C(159.91367041742976), C(159.91367041742976), either(C(0.016), C(1.6e-09)))) {
-        return 42;
+        return 45;
     }
     status = screw_axis_forward_dynamics_standard(q_0, dq_0, input_0, standard_parameters, out);
     if (!agrees(status, 1, C(101.87944409468251), C(101.87944409468251), either(C(0.0102), C(1.02e-09)))) {
-        return 43;
+        return 46;
     }
     status = screw_axis_forward_dynamics_standard(q_1, dq_1, input_1, standard_parameters, out);
     if (!agrees(status, 1, C(-27.758513543043502), C(27.758513543043502), either(C(0.00278), C(2.78e-10)))) {
-        return 44;
+        return 47;
     }
     status = screw_axis_forward_dynamics_standard(q_2, dq_2, input_2, standard_parameters, out);
     if (!agrees(status, 1, C(138.8515043773313), C(138.8515043773313), either(C(0.0139), C(1.39e-09)))) {
-        return 45;
+        return 48;
     }
     status = screw_axis_energy_standard(q_0, dq_0, standard_parameters, out, out + 1);
     if (!agrees(status, 2, C(39.75409789161914), C(39.75409789161914), either(C(0.00398), C(3.98e-10)))) {
-        return 46;
+        return 49;
     }
     status = screw_axis_energy_standard(q_1, dq_1, standard_parameters, out, out + 1);
     if (!agrees(status, 2, C(4.772982487806383), C(4.772982487806383), either(C(0.000477), C(4.77e-11)))) {
-        return 47;
+        return 50;
     }
     status = screw_axis_energy_standard(q_2, dq_2, standard_parameters, out, out + 1);
     if (!agrees(status, 2, C(72.23656219515955), C(72.23656219515955), either(C(0.00722), C(7.22e-10)))) {
-        return 48;
+        return 51;
+    }
+    status = screw_axis_joint_effort_standard(q_0, dq_0, ddq_0, standard_parameters, out);
+    if (!agrees(status, 1, C(-16393.648257328783), C(16393.648257328783), either(C(1.64), C(1.64e-07)))) {
+        return 52;
+    }
+    status = screw_axis_joint_effort_standard(q_1, dq_1, ddq_1, standard_parameters, out);
+    if (!agrees(status, 1, C(4510.144558417197), C(4510.144558417197), either(C(0.451), C(4.51e-08)))) {
+        return 53;
+    }
+    status = screw_axis_joint_effort_standard(q_2, dq_2, ddq_2, standard_parameters, out);
+    if (!agrees(status, 1, C(-22355.389315586755), C(22355.389315586755), either(C(2.24), C(2.24e-07)))) {
+        return 54;
     }
     status = screw_axis_forward_kinematics(q_0, out);
     if (!agrees(status, 16, C(-0.79688), C(13.20312), either(C(0.00132), C(1.32e-10)))) {
-        return 49;
+        return 55;
     }
     status = screw_axis_forward_kinematics(q_1, out);
     if (!agrees(status, 16, C(-1.01562), C(13.01562), either(C(0.0013), C(1.3e-10)))) {
-        return 50;
+        return 56;
     }
     status = screw_axis_forward_kinematics(q_2, out);
     if (!agrees(status, 16, C(-1.23438), C(13.23438), either(C(0.00132), C(1.32e-10)))) {
-        return 51;
+        return 57;
     }
     status = screw_axis_jacobian(q_0, out);
     if (!agrees(status, 6, C(-2.0), C(2.0), either(C(0.0002), C(2e-11)))) {
-        return 52;
+        return 58;
     }
     status = screw_axis_jacobian(q_1, out);
     if (!agrees(status, 6, C(-2.0), C(2.0), either(C(0.0002), C(2e-11)))) {
-        return 53;
+        return 59;
     }
     status = screw_axis_jacobian(q_2, out);
     if (!agrees(status, 6, C(-2.0), C(2.0), either(C(0.0002), C(2e-11)))) {
-        return 54;
+        return 60;
     }
     status = screw_axis_motor_from_joint(q_0, dq_0, ddq_0, out, out + 1, out + 2);
     if (!agrees(status, 3, C(-4103.69912056636), C(4103.69912056636), either(C(0.41), C(4.1e-08)))) {
-        return 55;
+        return 61;
     }
     status = screw_axis_motor_from_joint(q_1, dq_1, ddq_1, out, out + 1, out + 2);
     if (!agrees(status, 3, C(1668.9648140342704), C(1668.9648140342704), either(C(0.167), C(1.67e-08)))) {
-        return 56;
+        return 62;
     }
     status = screw_axis_motor_from_joint(q_2, dq_2, ddq_2, out, out + 1, out + 2);
     if (!agrees(status, 3, C(-5124.716732983043), C(5713.777921901744), either(C(0.571), C(5.71e-08)))) {
-        return 57;
+        return 63;
     }
     status = screw_axis_joint_from_motor(q_m_0, dq_m_0, ddq_m_0, out, out + 1, out + 2);
     if (!agrees(status, 3, C(-0.001889964949216257), C(0.001889964949216257), either(C(1.89e-07),
         C(1.89e-14)))) {
-        return 58;
+        return 64;
     }
     status = screw_axis_joint_from_motor(q_m_1, dq_m_1, ddq_m_1, out, out + 1, out + 2);
     if (!agrees(status, 3, C(0.0022878523069459955), C(0.0022878523069459955), either(C(2.29e-07),
         C(2.29e-14)))) {
-        return 59;
+        return 65;
     }
     status = screw_axis_joint_from_motor(q_m_2, dq_m_2, ddq_m_2, out, out + 1, out + 2);
     if (!agrees(status, 3, C(-0.0030836270224054723), C(0.0030836270224054723), either(C(3.08e-07),
         C(3.08e-14)))) {
-        return 60;
+        return 66;
     }
     status = screw_axis_drive_gain(q_0, out);
     if (!agrees(status, 1, C(37.69911184307752), C(37.69911184307752), either(C(0.00377), C(3.77e-10)))) {
-        return 61;
+        return 67;
     }
     status = screw_axis_drive_gain(q_1, out);
     if (!agrees(status, 1, C(37.69911184307752), C(37.69911184307752), either(C(0.00377), C(3.77e-10)))) {
-        return 62;
+        return 68;
     }
     status = screw_axis_drive_gain(q_2, out);
     if (!agrees(status, 1, C(37.69911184307752), C(37.69911184307752), either(C(0.00377), C(3.77e-10)))) {
-        return 63;
+        return 69;
     }
     status = screw_axis_inverse_dynamics_derivatives(q_0, dq_0, ddq_0, parameters, out, out + 1, out + 2, out
         + 3);
     if (!agrees(status, 4, C(1467.06793361513), C(2336.7779854239106), either(C(0.234), C(2.34e-08)))) {
-        return 64;
+        return 70;
     }
     status = screw_axis_inverse_dynamics_derivatives(q_1, dq_1, ddq_1, parameters, out, out + 1, out + 2, out
         + 3);
     if (!agrees(status, 4, C(2021.5582596045783), C(2021.5582596045783), either(C(0.202), C(2.02e-08)))) {
-        return 65;
+        return 71;
     }
     status = screw_axis_inverse_dynamics_derivatives(q_2, dq_2, ddq_2, parameters, out, out + 1, out + 2, out
         + 3);
     if (!agrees(status, 4, C(1308.9278404752874), C(2494.9180785637527), either(C(0.249), C(2.49e-08)))) {
-        return 66;
+        return 72;
     }
     status = screw_axis_forward_dynamics_derivatives(q_0, dq_0, input_0, parameters, out, out + 1, out + 2,
         out + 3);
     if (!agrees(status, 4, C(-341.5495335402099), C(547.1943954540204), either(C(0.0547), C(5.47e-09)))) {
-        return 67;
+        return 73;
     }
     status = screw_axis_forward_dynamics_derivatives(q_1, dq_1, input_1, parameters, out, out + 1, out + 2,
         out + 3);
     if (!agrees(status, 4, C(-471.1874915163356), C(473.0734647089002), either(C(0.0473), C(4.73e-09)))) {
-        return 68;
+        return 74;
     }
     status = screw_axis_forward_dynamics_derivatives(q_2, dq_2, input_2, parameters, out, out + 1, out + 2,
         out + 3);
     if (!agrees(status, 4, C(-304.5774731610513), C(584.166455833179), either(C(0.0584), C(5.84e-09)))) {
-        return 69;
+        return 75;
     }
     status = screw_axis_inverse_dynamics_derivatives_standard(q_0, dq_0, ddq_0, standard_parameters, out, out
         + 1, out + 2, out + 3);
     if (!agrees(status, 4, C(1467.067933653192), C(2336.7779854744294), either(C(0.234), C(2.34e-08)))) {
-        return 70;
+        return 76;
     }
     status = screw_axis_inverse_dynamics_derivatives_standard(q_1, dq_1, ddq_1, standard_parameters, out, out
         + 1, out + 2, out + 3);
     if (!agrees(status, 4, C(2021.5582596523293), C(2021.5582596523293), either(C(0.202), C(2.02e-08)))) {
-        return 71;
+        return 77;
     }
     status = screw_axis_inverse_dynamics_derivatives_standard(q_2, dq_2, ddq_2, standard_parameters, out, out
         + 1, out + 2, out + 3);
     if (!agrees(status, 4, C(1308.9278405105815), C(2494.91807861704), either(C(0.249), C(2.49e-08)))) {
-        return 72;
+        return 78;
     }
     status = screw_axis_forward_dynamics_derivatives_standard(q_0, dq_0, input_0, standard_parameters, out,
         out + 1, out + 2, out + 3);
     if (!agrees(status, 4, C(-341.549532648648), C(547.1943940256546), either(C(0.0547), C(5.47e-09)))) {
-        return 73;
+        return 79;
     }
     status = screw_axis_forward_dynamics_derivatives_standard(q_1, dq_1, input_1, standard_parameters, out,
         out + 1, out + 2, out + 3);
     if (!agrees(status, 4, C(-471.187490286374), C(473.07346347401557), either(C(0.0473), C(4.73e-09)))) {
-        return 74;
+        return 80;
     }
     status = screw_axis_forward_dynamics_derivatives_standard(q_2, dq_2, input_2, standard_parameters, out,
         out + 1, out + 2, out + 3);
     if (!agrees(status, 4, C(-304.5774723659992), C(584.1664543083034), either(C(0.0584), C(5.84e-09)))) {
-        return 75;
+        return 81;
+    }
+    status = screw_axis_momentum_observer_step(q_0, dq_0, input_0, dt, gain, parameters, observer_states, out,
+        out + 1);
+    if (!agrees(status, 2, C(-6583.504221098482), C(6609.493553901518), either(C(0.661), C(6.61e-08)))) {
+        return 82;
+    }
+    status = screw_axis_momentum_observer_step(q_1, dq_1, input_1, dt, gain, parameters, observer_states, out,
+        out + 1);
+    if (!agrees(status, 2, C(1795.4303061077499), C(1802.50726889225), either(C(0.18), C(1.8e-08)))) {
+        return 83;
+    }
+    status = screw_axis_momentum_observer_step(q_2, dq_2, input_2, dt, gain, parameters, observer_states, out,
+        out + 1);
+    if (!agrees(status, 2, C(-8977.49628576079), C(9012.911589239211), either(C(0.901), C(9.01e-08)))) {
+        return 84;
+    }
+    status = screw_axis_momentum_observer_step_standard(q_0, dq_0, input_0, dt, gain, standard_parameters,
+        observer_states, out, out + 1);
+    if (!agrees(status, 2, C(-6583.504238326069), C(6609.493571111886), either(C(0.661), C(6.61e-08)))) {
+        return 85;
+    }
+    status = screw_axis_momentum_observer_step_standard(q_1, dq_1, input_1, dt, gain, standard_parameters,
+        observer_states, out, out + 1);
+    if (!agrees(status, 2, C(1795.4303108061827), C(1802.5072735859867), either(C(0.18), C(1.8e-08)))) {
+        return 86;
+    }
+    status = screw_axis_momentum_observer_step_standard(q_2, dq_2, input_2, dt, gain, standard_parameters,
+        observer_states, out, out + 1);
+    if (!agrees(status, 2, C(-8977.496309252952), C(9012.911612707894), either(C(0.901), C(9.01e-08)))) {
+        return 87;
     }
     return 0;
 }

@@ -56,11 +56,14 @@ static const two_fingers_real_t ddq_m_1[] = {C(0.5625), C(-0.8125), C(-0.1875), 
 static const two_fingers_real_t q_m_2[] = {C(-0.8125), C(-0.1875), C(0.4375), C(-0.9375), C(-0.3125)};
 static const two_fingers_real_t dq_m_2[] = {C(-0.6875), C(-0.0625), C(0.5625), C(-0.8125), C(-0.1875)};
 static const two_fingers_real_t ddq_m_2[] = {C(-0.5625), C(0.0625), C(0.6875), C(-0.6875), C(-0.0625)};
+static const two_fingers_real_t dt[] = {C(0.001)};
+static const two_fingers_real_t gain[] = {C(30.0), C(30.0), C(30.0), C(30.0), C(30.0)};
+static const two_fingers_real_t observer_states[] = {C(0.001), C(0.001), C(0.001), C(0.001), C(0.001)};
 
 static two_fingers_real_t out[325];
 
 /* Whether a weighted sum of n elements of out, and of their magnitudes, is as it should be. */
-static int agrees(int status, int n, two_fingers_real_t sum, two_fingers_real_t magnitude, two_fingers_real_t allowed)
+static int agrees(two_fingers_status_t status, int n, two_fingers_real_t sum, two_fingers_real_t magnitude, two_fingers_real_t allowed)
 {
     int i;
     for (i = 0; i < n; ++i) {
@@ -79,7 +82,7 @@ static two_fingers_real_t either(two_fingers_real_t in_float, two_fingers_real_t
 
 int main(void)
 {
-    int status;
+    two_fingers_status_t status;
     status = two_fingers_inverse_dynamics(q_0, dq_0, ddq_0, parameters, out);
     if (!agrees(status, 5, C(-65.64545405784772), C(177.66234033065223), either(C(0.0178), C(1.78e-09)))) {
         return 1;
@@ -152,246 +155,300 @@ int main(void)
     if (!agrees(status, 2, C(8.366386256022086), C(8.366386256022086), either(C(0.000837), C(8.37e-11)))) {
         return 18;
     }
+    status = two_fingers_joint_effort(q_0, dq_0, ddq_0, parameters, out);
+    if (!agrees(status, 5, C(-68.10438531852621), C(135.3145170822089), either(C(0.0135), C(1.35e-09)))) {
+        return 19;
+    }
+    status = two_fingers_joint_effort(q_1, dq_1, ddq_1, parameters, out);
+    if (!agrees(status, 5, C(82.03265029841373), C(118.56876642311472), either(C(0.0119), C(1.19e-09)))) {
+        return 20;
+    }
+    status = two_fingers_joint_effort(q_2, dq_2, ddq_2, parameters, out);
+    if (!agrees(status, 5, C(-9.762912744375136), C(150.33876490118462), either(C(0.015), C(1.5e-09)))) {
+        return 21;
+    }
     status = two_fingers_regressor(q_0, dq_0, ddq_0, out);
     if (!agrees(status, 205, C(-2436.540487280526), C(23043.78565665781), either(C(2.3), C(2.3e-07)))) {
-        return 19;
+        return 22;
     }
     status = two_fingers_regressor(q_1, dq_1, ddq_1, out);
     if (!agrees(status, 205, C(7690.686604989294), C(23293.415950972685), either(C(2.33), C(2.33e-07)))) {
-        return 20;
+        return 23;
     }
     status = two_fingers_regressor(q_2, dq_2, ddq_2, out);
     if (!agrees(status, 205, C(5093.080324933154), C(25692.909306299276), either(C(2.57), C(2.57e-07)))) {
-        return 21;
+        return 24;
     }
     status = two_fingers_regressor_standard(q_0, dq_0, ddq_0, out);
     if (!agrees(status, 325, C(-3844.73424678596), C(28427.54426803052), either(C(2.84), C(2.84e-07)))) {
-        return 22;
+        return 25;
     }
     status = two_fingers_regressor_standard(q_1, dq_1, ddq_1, out);
     if (!agrees(status, 325, C(11452.526347531582), C(30206.13559088978), either(C(3.02), C(3.02e-07)))) {
-        return 23;
+        return 26;
     }
     status = two_fingers_regressor_standard(q_2, dq_2, ddq_2, out);
     if (!agrees(status, 325, C(-9014.263144809307), C(33151.48489228413), either(C(3.32), C(3.32e-07)))) {
-        return 24;
+        return 27;
     }
     status = two_fingers_regressor_packed(q_0, dq_0, ddq_0, out);
     if (!agrees(status, 83, C(-884.2326666048657), C(14226.702422310544), either(C(1.42), C(1.42e-07)))) {
-        return 25;
+        return 28;
     }
     status = two_fingers_regressor_packed(q_1, dq_1, ddq_1, out);
     if (!agrees(status, 83, C(11957.293303985842), C(24306.649807048205), either(C(2.43), C(2.43e-07)))) {
-        return 26;
+        return 29;
     }
     status = two_fingers_regressor_packed(q_2, dq_2, ddq_2, out);
     if (!agrees(status, 83, C(-3700.6304025647087), C(18001.704159672747), either(C(1.8), C(1.8e-07)))) {
-        return 27;
+        return 30;
     }
     status = two_fingers_slotine_li_regressor(q_0, dq_0, dq_r_0, ddq_r_0, out);
     if (!agrees(status, 205, C(582.621729236533), C(25655.909158504615), either(C(2.57), C(2.57e-07)))) {
-        return 28;
+        return 31;
     }
     status = two_fingers_slotine_li_regressor(q_1, dq_1, dq_r_1, ddq_r_1, out);
     if (!agrees(status, 205, C(4640.723038329648), C(21435.896527853278), either(C(2.14), C(2.14e-07)))) {
-        return 29;
+        return 32;
     }
     status = two_fingers_slotine_li_regressor(q_2, dq_2, dq_r_2, ddq_r_2, out);
     if (!agrees(status, 205, C(8118.288131463667), C(27170.337838406966), either(C(2.72), C(2.72e-07)))) {
-        return 30;
+        return 33;
     }
     status = two_fingers_inverse_dynamics_standard(q_0, dq_0, ddq_0, standard_parameters, out);
     if (!agrees(status, 5, C(-65.64545405784772), C(177.66234033065223), either(C(0.0178), C(1.78e-09)))) {
-        return 31;
+        return 34;
     }
     status = two_fingers_inverse_dynamics_standard(q_1, dq_1, ddq_1, standard_parameters, out);
     if (!agrees(status, 5, C(122.6482334253906), C(183.54176029989225), either(C(0.0184), C(1.84e-09)))) {
-        return 32;
+        return 35;
     }
     status = two_fingers_inverse_dynamics_standard(q_2, dq_2, ddq_2, standard_parameters, out);
     if (!agrees(status, 5, C(48.834420235029214), C(185.45866669298658), either(C(0.0185), C(1.85e-09)))) {
-        return 33;
+        return 36;
     }
     status = two_fingers_gravity_standard(q_0, standard_parameters, out);
     if (!agrees(status, 5, C(16.003658988383556), C(24.58802001578885), either(C(0.00246), C(2.46e-10)))) {
-        return 34;
+        return 37;
     }
     status = two_fingers_gravity_standard(q_1, standard_parameters, out);
     if (!agrees(status, 5, C(28.145160913520183), C(35.24176659452841), either(C(0.00352), C(3.52e-10)))) {
-        return 35;
+        return 38;
     }
     status = two_fingers_gravity_standard(q_2, standard_parameters, out);
     if (!agrees(status, 5, C(30.788075122683566), C(42.070421165188115), either(C(0.00421), C(4.21e-10)))) {
-        return 36;
+        return 39;
     }
     status = two_fingers_bias_standard(q_0, dq_0, standard_parameters, out);
     if (!agrees(status, 5, C(-64.82839044962861), C(175.70310426942802), either(C(0.0176), C(1.76e-09)))) {
-        return 37;
+        return 40;
     }
     status = two_fingers_bias_standard(q_1, dq_1, standard_parameters, out);
     if (!agrees(status, 5, C(120.22752211127556), C(181.09390894026834), either(C(0.0181), C(1.81e-09)))) {
-        return 38;
+        return 41;
     }
     status = two_fingers_bias_standard(q_2, dq_2, standard_parameters, out);
     if (!agrees(status, 5, C(51.676236075522255), C(185.72804856841208), either(C(0.0186), C(1.86e-09)))) {
-        return 39;
+        return 42;
     }
     status = two_fingers_mass_matrix_standard(q_0, standard_parameters, out);
     if (!agrees(status, 25, C(5.1904510242904704), C(6.2621096577447375), either(C(0.000626), C(6.26e-11)))) {
-        return 40;
+        return 43;
     }
     status = two_fingers_mass_matrix_standard(q_1, standard_parameters, out);
     if (!agrees(status, 25, C(6.134789042298484), C(6.134789042298484), either(C(0.000613), C(6.13e-11)))) {
-        return 41;
+        return 44;
     }
     status = two_fingers_mass_matrix_standard(q_2, standard_parameters, out);
     if (!agrees(status, 25, C(6.029178350014744), C(6.190928080251413), either(C(0.000619), C(6.19e-11)))) {
-        return 42;
+        return 45;
     }
     status = two_fingers_forward_dynamics_standard(q_0, dq_0, input_0, standard_parameters, out);
     if (!agrees(status, 5, C(127.69423405969974), C(548.8710419459381), either(C(0.0549), C(5.49e-09)))) {
-        return 43;
+        return 46;
     }
     status = two_fingers_forward_dynamics_standard(q_1, dq_1, input_1, standard_parameters, out);
     if (!agrees(status, 5, C(-269.5602102466898), C(748.7985169394909), either(C(0.0749), C(7.49e-09)))) {
-        return 44;
+        return 47;
     }
     status = two_fingers_forward_dynamics_standard(q_2, dq_2, input_2, standard_parameters, out);
     if (!agrees(status, 5, C(-78.4363158200999), C(991.1422996057071), either(C(0.0991), C(9.91e-09)))) {
-        return 45;
+        return 48;
     }
     status = two_fingers_energy_standard(q_0, dq_0, standard_parameters, out, out + 1);
     if (!agrees(status, 2, C(40.874431668771976), C(40.874431668771976), either(C(0.00409), C(4.09e-10)))) {
-        return 46;
+        return 49;
     }
     status = two_fingers_energy_standard(q_1, dq_1, standard_parameters, out, out + 1);
     if (!agrees(status, 2, C(64.58676164873056), C(64.58676164873056), either(C(0.00646), C(6.46e-10)))) {
-        return 47;
+        return 50;
     }
     status = two_fingers_energy_standard(q_2, dq_2, standard_parameters, out, out + 1);
     if (!agrees(status, 2, C(56.239186256022094), C(56.239186256022094), either(C(0.00562), C(5.62e-10)))) {
-        return 48;
+        return 51;
+    }
+    status = two_fingers_joint_effort_standard(q_0, dq_0, ddq_0, standard_parameters, out);
+    if (!agrees(status, 5, C(-68.10438531852621), C(135.3145170822089), either(C(0.0135), C(1.35e-09)))) {
+        return 52;
+    }
+    status = two_fingers_joint_effort_standard(q_1, dq_1, ddq_1, standard_parameters, out);
+    if (!agrees(status, 5, C(82.03265029841374), C(118.56876642311472), either(C(0.0119), C(1.19e-09)))) {
+        return 53;
+    }
+    status = two_fingers_joint_effort_standard(q_2, dq_2, ddq_2, standard_parameters, out);
+    if (!agrees(status, 5, C(-9.762912744375136), C(150.33876490118462), either(C(0.015), C(1.5e-09)))) {
+        return 54;
     }
     status = two_fingers_forward_kinematics(q_0, out);
     if (!agrees(status, 80, C(15.810805777094785), C(102.2578912181648), either(C(0.0102), C(1.02e-09)))) {
-        return 49;
+        return 55;
     }
     status = two_fingers_forward_kinematics(q_1, out);
     if (!agrees(status, 80, C(51.06912825635902), C(89.62392780114634), either(C(0.00896), C(8.96e-10)))) {
-        return 50;
+        return 56;
     }
     status = two_fingers_forward_kinematics(q_2, out);
     if (!agrees(status, 80, C(50.36989511757382), C(103.47347013916306), either(C(0.0103), C(1.03e-09)))) {
-        return 51;
+        return 57;
     }
     status = two_fingers_jacobian(q_0, out);
     if (!agrees(status, 30, C(14.162796781270623), C(17.567884731147224), either(C(0.00176), C(1.76e-10)))) {
-        return 52;
+        return 58;
     }
     status = two_fingers_jacobian(q_1, out);
     if (!agrees(status, 30, C(12.345486912966447), C(13.352816490778421), either(C(0.00134), C(1.34e-10)))) {
-        return 53;
+        return 59;
     }
     status = two_fingers_jacobian(q_2, out);
     if (!agrees(status, 30, C(-6.706445259635724), C(16.99977548253857), either(C(0.0017), C(1.7e-10)))) {
-        return 54;
+        return 60;
     }
     status = two_fingers_motor_from_joint(q_0, dq_0, ddq_0, out, out + 5, out + 10);
     if (!agrees(status, 15, C(-817.5), C(1275.0), either(C(0.128), C(1.28e-08)))) {
-        return 55;
+        return 61;
     }
     status = two_fingers_motor_from_joint(q_1, dq_1, ddq_1, out, out + 5, out + 10);
     if (!agrees(status, 15, C(607.5), C(1076.25), either(C(0.108), C(1.08e-08)))) {
-        return 56;
+        return 62;
     }
     status = two_fingers_motor_from_joint(q_2, dq_2, ddq_2, out, out + 5, out + 10);
     if (!agrees(status, 15, C(-607.5), C(1578.75), either(C(0.158), C(1.58e-08)))) {
-        return 57;
+        return 63;
     }
     status = two_fingers_joint_from_motor(q_m_0, dq_m_0, ddq_m_0, out, out + 5, out + 10);
     if (!agrees(status, 15, C(0.08020833333333333), C(0.7114583333333333), either(C(7.11e-05), C(7.11e-12))))
         {
-        return 58;
+        return 64;
     }
     status = two_fingers_joint_from_motor(q_m_1, dq_m_1, ddq_m_1, out, out + 5, out + 10);
     if (!agrees(status, 15, C(0.04895833333333333), C(1.003125), either(C(0.0001), C(1e-11)))) {
-        return 59;
+        return 65;
     }
     status = two_fingers_joint_from_motor(q_m_2, dq_m_2, ddq_m_2, out, out + 5, out + 10);
     if (!agrees(status, 15, C(-0.3489583333333333), C(0.7697916666666667), either(C(7.7e-05), C(7.7e-12)))) {
-        return 60;
+        return 66;
     }
     status = two_fingers_drive_gain(q_0, out);
     if (!agrees(status, 5, C(10.799999999999999), C(10.799999999999999), either(C(0.00108), C(1.08e-10)))) {
-        return 61;
+        return 67;
     }
     status = two_fingers_drive_gain(q_1, out);
     if (!agrees(status, 5, C(10.799999999999999), C(10.799999999999999), either(C(0.00108), C(1.08e-10)))) {
-        return 62;
+        return 68;
     }
     status = two_fingers_drive_gain(q_2, out);
     if (!agrees(status, 5, C(10.799999999999999), C(10.799999999999999), either(C(0.00108), C(1.08e-10)))) {
-        return 63;
+        return 69;
     }
     status = two_fingers_inverse_dynamics_derivatives(q_0, dq_0, ddq_0, parameters, out, out + 5, out + 30,
         out + 55);
     if (!agrees(status, 80, C(364.4523957182429), C(739.377410785348), either(C(0.0739), C(7.39e-09)))) {
-        return 64;
+        return 70;
     }
     status = two_fingers_inverse_dynamics_derivatives(q_1, dq_1, ddq_1, parameters, out, out + 5, out + 30,
         out + 55);
     if (!agrees(status, 80, C(442.9674727783064), C(737.1822371924814), either(C(0.0737), C(7.37e-09)))) {
-        return 65;
+        return 71;
     }
     status = two_fingers_inverse_dynamics_derivatives(q_2, dq_2, ddq_2, parameters, out, out + 5, out + 30,
         out + 55);
     if (!agrees(status, 80, C(434.5698894968092), C(695.4730445177306), either(C(0.0695), C(6.95e-09)))) {
-        return 66;
+        return 72;
     }
     status = two_fingers_forward_dynamics_derivatives(q_0, dq_0, input_0, parameters, out, out + 5, out + 30,
         out + 55);
     if (!agrees(status, 80, C(-1026.6612345223944), C(3316.844419317877), either(C(0.332), C(3.32e-08)))) {
-        return 67;
+        return 73;
     }
     status = two_fingers_forward_dynamics_derivatives(q_1, dq_1, input_1, parameters, out, out + 5, out + 30,
         out + 55);
     if (!agrees(status, 80, C(-974.9864989913295), C(3527.234696411359), either(C(0.353), C(3.53e-08)))) {
-        return 68;
+        return 74;
     }
     status = two_fingers_forward_dynamics_derivatives(q_2, dq_2, input_2, parameters, out, out + 5, out + 30,
         out + 55);
     if (!agrees(status, 80, C(-1105.3230084027016), C(3740.788812293527), either(C(0.374), C(3.74e-08)))) {
-        return 69;
+        return 75;
     }
     status = two_fingers_inverse_dynamics_derivatives_standard(q_0, dq_0, ddq_0, standard_parameters, out, out
         + 5, out + 30, out + 55);
     if (!agrees(status, 80, C(364.4523957182429), C(739.377410785348), either(C(0.0739), C(7.39e-09)))) {
-        return 70;
+        return 76;
     }
     status = two_fingers_inverse_dynamics_derivatives_standard(q_1, dq_1, ddq_1, standard_parameters, out, out
         + 5, out + 30, out + 55);
     if (!agrees(status, 80, C(442.9674727783064), C(737.1822371924814), either(C(0.0737), C(7.37e-09)))) {
-        return 71;
+        return 77;
     }
     status = two_fingers_inverse_dynamics_derivatives_standard(q_2, dq_2, ddq_2, standard_parameters, out, out
         + 5, out + 30, out + 55);
     if (!agrees(status, 80, C(434.5698894968092), C(695.4730445177306), either(C(0.0695), C(6.95e-09)))) {
-        return 72;
+        return 78;
     }
     status = two_fingers_forward_dynamics_derivatives_standard(q_0, dq_0, input_0, standard_parameters, out,
         out + 5, out + 30, out + 55);
     if (!agrees(status, 80, C(-1026.6612345223944), C(3316.844419317877), either(C(0.332), C(3.32e-08)))) {
-        return 73;
+        return 79;
     }
     status = two_fingers_forward_dynamics_derivatives_standard(q_1, dq_1, input_1, standard_parameters, out,
         out + 5, out + 30, out + 55);
     if (!agrees(status, 80, C(-974.9864989913295), C(3527.234696411359), either(C(0.353), C(3.53e-08)))) {
-        return 74;
+        return 80;
     }
     status = two_fingers_forward_dynamics_derivatives_standard(q_2, dq_2, input_2, standard_parameters, out,
         out + 5, out + 30, out + 55);
     if (!agrees(status, 80, C(-1105.3230084027016), C(3740.788812293527), either(C(0.374), C(3.74e-08)))) {
-        return 75;
+        return 81;
+    }
+    status = two_fingers_momentum_observer_step(q_0, dq_0, input_0, dt, gain, parameters, observer_states,
+        out, out + 5);
+    if (!agrees(status, 10, C(-82.0204359437325), C(87.30328415328519), either(C(0.00873), C(8.73e-10)))) {
+        return 82;
+    }
+    status = two_fingers_momentum_observer_step(q_1, dq_1, input_1, dt, gain, parameters, observer_states,
+        out, out + 5);
+    if (!agrees(status, 10, C(70.02570868719842), C(71.92544491727271), either(C(0.00719), C(7.19e-10)))) {
+        return 83;
+    }
+    status = two_fingers_momentum_observer_step(q_2, dq_2, input_2, dt, gain, parameters, observer_states,
+        out, out + 5);
+    if (!agrees(status, 10, C(-105.91161865528628), C(124.30653503581163), either(C(0.0124), C(1.24e-09)))) {
+        return 84;
+    }
+    status = two_fingers_momentum_observer_step_standard(q_0, dq_0, input_0, dt, gain, standard_parameters,
+        observer_states, out, out + 5);
+    if (!agrees(status, 10, C(-82.0204359437325), C(87.30328415328519), either(C(0.00873), C(8.73e-10)))) {
+        return 85;
+    }
+    status = two_fingers_momentum_observer_step_standard(q_1, dq_1, input_1, dt, gain, standard_parameters,
+        observer_states, out, out + 5);
+    if (!agrees(status, 10, C(70.02570868719842), C(71.92544491727271), either(C(0.00719), C(7.19e-10)))) {
+        return 86;
+    }
+    status = two_fingers_momentum_observer_step_standard(q_2, dq_2, input_2, dt, gain, standard_parameters,
+        observer_states, out, out + 5);
+    if (!agrees(status, 10, C(-105.91161865528626), C(124.30653503581163), either(C(0.0124), C(1.24e-09)))) {
+        return 87;
     }
     return 0;
 }

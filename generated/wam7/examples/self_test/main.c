@@ -85,11 +85,15 @@ static const wam7_real_t dq_m_2[] = {C(-0.6875), C(-0.0625), C(0.5625), C(-0.812
     C(-0.9375)};
 static const wam7_real_t ddq_m_2[] = {C(-0.5625), C(0.0625), C(0.6875), C(-0.6875), C(-0.0625), C(0.5625),
     C(-0.8125)};
+static const wam7_real_t dt[] = {C(0.001)};
+static const wam7_real_t gain[] = {C(30.0), C(30.0), C(30.0), C(30.0), C(30.0), C(30.0), C(30.0)};
+static const wam7_real_t observer_states[] = {C(0.001), C(0.001), C(0.001), C(0.001), C(0.001), C(0.001),
+    C(0.001)};
 
 static wam7_real_t out[637];
 
 /* Whether a weighted sum of n elements of out, and of their magnitudes, is as it should be. */
-static int agrees(int status, int n, wam7_real_t sum, wam7_real_t magnitude, wam7_real_t allowed)
+static int agrees(wam7_status_t status, int n, wam7_real_t sum, wam7_real_t magnitude, wam7_real_t allowed)
 {
     int i;
     for (i = 0; i < n; ++i) {
@@ -108,7 +112,7 @@ static wam7_real_t either(wam7_real_t in_float, wam7_real_t in_double)
 
 int main(void)
 {
-    int status;
+    wam7_status_t status;
     status = wam7_inverse_dynamics(q_0, dq_0, ddq_0, parameters, out);
     if (!agrees(status, 7, C(-29.380660223091148), C(60.71686632531264), either(C(0.00607), C(6.07e-10)))) {
         return 1;
@@ -181,246 +185,300 @@ int main(void)
     if (!agrees(status, 2, C(72.93953273523816), C(72.93953273523816), either(C(0.00729), C(7.29e-10)))) {
         return 18;
     }
+    status = wam7_joint_effort(q_0, dq_0, ddq_0, parameters, out);
+    if (!agrees(status, 7, C(45.4650693129876), C(175.59080367588498), either(C(0.0176), C(1.76e-09)))) {
+        return 19;
+    }
+    status = wam7_joint_effort(q_1, dq_1, ddq_1, parameters, out);
+    if (!agrees(status, 7, C(-216.87524680642562), C(232.9513708666089), either(C(0.0233), C(2.33e-09)))) {
+        return 20;
+    }
+    status = wam7_joint_effort(q_2, dq_2, ddq_2, parameters, out);
+    if (!agrees(status, 7, C(-23.31245922333555), C(112.08286320586213), either(C(0.0112), C(1.12e-09)))) {
+        return 21;
+    }
     status = wam7_regressor(q_0, dq_0, ddq_0, out);
     if (!agrees(status, 434, C(-2271.0492859747746), C(3594.72311744484), either(C(0.359), C(3.59e-08)))) {
-        return 19;
+        return 22;
     }
     status = wam7_regressor(q_1, dq_1, ddq_1, out);
     if (!agrees(status, 434, C(-291.7220376112217), C(1316.0151906573137), either(C(0.132), C(1.32e-08)))) {
-        return 20;
+        return 23;
     }
     status = wam7_regressor(q_2, dq_2, ddq_2, out);
     if (!agrees(status, 434, C(2686.6791119948357), C(3585.8342119629374), either(C(0.359), C(3.59e-08)))) {
-        return 21;
+        return 24;
     }
     status = wam7_regressor_standard(q_0, dq_0, ddq_0, out);
     if (!agrees(status, 637, C(-2512.717330135325), C(3754.5596524348957), either(C(0.375), C(3.75e-08)))) {
-        return 22;
+        return 25;
     }
     status = wam7_regressor_standard(q_1, dq_1, ddq_1, out);
     if (!agrees(status, 637, C(322.99143489322705), C(1915.6369839483207), either(C(0.192), C(1.92e-08)))) {
-        return 23;
+        return 26;
     }
     status = wam7_regressor_standard(q_2, dq_2, ddq_2, out);
     if (!agrees(status, 637, C(1955.3839271005756), C(3947.2722372229573), either(C(0.395), C(3.95e-08)))) {
-        return 24;
+        return 27;
     }
     status = wam7_regressor_packed(q_0, dq_0, ddq_0, out);
     if (!agrees(status, 207, C(-1473.2754499435214), C(2715.898207583961), either(C(0.272), C(2.72e-08)))) {
-        return 25;
+        return 28;
     }
     status = wam7_regressor_packed(q_1, dq_1, ddq_1, out);
     if (!agrees(status, 207, C(-105.9532591343175), C(1337.8039644138573), either(C(0.134), C(1.34e-08)))) {
-        return 26;
+        return 29;
     }
     status = wam7_regressor_packed(q_2, dq_2, ddq_2, out);
     if (!agrees(status, 207, C(910.2684635485708), C(2907.3087389488182), either(C(0.291), C(2.91e-08)))) {
-        return 27;
+        return 30;
     }
     status = wam7_slotine_li_regressor(q_0, dq_0, dq_r_0, ddq_r_0, out);
     if (!agrees(status, 434, C(-1695.2799721984675), C(3372.702974228687), either(C(0.337), C(3.37e-08)))) {
-        return 28;
+        return 31;
     }
     status = wam7_slotine_li_regressor(q_1, dq_1, dq_r_1, ddq_r_1, out);
     if (!agrees(status, 434, C(38.57743727708868), C(1612.835076771344), either(C(0.161), C(1.61e-08)))) {
-        return 29;
+        return 32;
     }
     status = wam7_slotine_li_regressor(q_2, dq_2, dq_r_2, ddq_r_2, out);
     if (!agrees(status, 434, C(117.14110100162056), C(3499.4858511938974), either(C(0.35), C(3.5e-08)))) {
-        return 30;
+        return 33;
     }
     status = wam7_inverse_dynamics_standard(q_0, dq_0, ddq_0, standard_parameters, out);
     if (!agrees(status, 7, C(-29.380660223091148), C(60.716866325312644), either(C(0.00607), C(6.07e-10)))) {
-        return 31;
+        return 34;
     }
     status = wam7_inverse_dynamics_standard(q_1, dq_1, ddq_1, standard_parameters, out);
     if (!agrees(status, 7, C(-49.02421006774564), C(49.86176993333819), either(C(0.00499), C(4.99e-10)))) {
-        return 32;
+        return 35;
     }
     status = wam7_inverse_dynamics_standard(q_2, dq_2, ddq_2, standard_parameters, out);
     if (!agrees(status, 7, C(-2.7115729139702056), C(18.793498239861655), either(C(0.00188), C(1.88e-10)))) {
-        return 33;
+        return 36;
     }
     status = wam7_gravity_standard(q_0, standard_parameters, out);
     if (!agrees(status, 7, C(-5.65782105932552), C(33.21841206272444), either(C(0.00332), C(3.32e-10)))) {
-        return 34;
+        return 37;
     }
     status = wam7_gravity_standard(q_1, standard_parameters, out);
     if (!agrees(status, 7, C(-48.6523252134735), C(48.6523252134735), either(C(0.00487), C(4.87e-10)))) {
-        return 35;
+        return 38;
     }
     status = wam7_gravity_standard(q_2, standard_parameters, out);
     if (!agrees(status, 7, C(-24.396848670403685), C(31.532956483601094), either(C(0.00315), C(3.15e-10)))) {
-        return 36;
+        return 39;
     }
     status = wam7_bias_standard(q_0, dq_0, standard_parameters, out);
     if (!agrees(status, 7, C(-29.197346589340402), C(60.036906950620704), either(C(0.006), C(6e-10)))) {
-        return 37;
+        return 40;
     }
     status = wam7_bias_standard(q_1, dq_1, standard_parameters, out);
     if (!agrees(status, 7, C(-50.930956716379164), C(51.57239098870389), either(C(0.00516), C(5.16e-10)))) {
-        return 38;
+        return 41;
     }
     status = wam7_bias_standard(q_2, dq_2, standard_parameters, out);
     if (!agrees(status, 7, C(-2.5810224185600035), C(18.03814074018581), either(C(0.0018), C(1.8e-10)))) {
-        return 39;
+        return 42;
     }
     status = wam7_mass_matrix_standard(q_0, standard_parameters, out);
     if (!agrees(status, 49, C(18.311388289805546), C(32.326527976692724), either(C(0.00323), C(3.23e-10)))) {
-        return 40;
+        return 43;
     }
     status = wam7_mass_matrix_standard(q_1, standard_parameters, out);
     if (!agrees(status, 49, C(27.954061620315525), C(54.236345742513514), either(C(0.00542), C(5.42e-10)))) {
-        return 41;
+        return 44;
     }
     status = wam7_mass_matrix_standard(q_2, standard_parameters, out);
     if (!agrees(status, 49, C(9.91151226876278), C(20.93059373539321), either(C(0.00209), C(2.09e-10)))) {
-        return 42;
+        return 45;
     }
     status = wam7_forward_dynamics_standard(q_0, dq_0, input_0, standard_parameters, out);
     if (!agrees(status, 7, C(320.0461983229624), C(869.0015880699887), either(C(0.566), C(8.69e-09)))) {
-        return 43;
+        return 46;
     }
     status = wam7_forward_dynamics_standard(q_1, dq_1, input_1, standard_parameters, out);
     if (!agrees(status, 7, C(-105.41219102350983), C(616.2832475374464), either(C(0.344), C(6.16e-09)))) {
-        return 44;
+        return 47;
     }
     status = wam7_forward_dynamics_standard(q_2, dq_2, input_2, standard_parameters, out);
     if (!agrees(status, 7, C(49.820010293119616), C(952.2425922911738), either(C(0.37), C(9.52e-09)))) {
-        return 45;
+        return 48;
     }
     status = wam7_energy_standard(q_0, dq_0, standard_parameters, out, out + 1);
     if (!agrees(status, 2, C(107.21514142646704), C(107.21514142646704), either(C(0.0107), C(1.07e-09)))) {
-        return 46;
+        return 49;
     }
     status = wam7_energy_standard(q_1, dq_1, standard_parameters, out, out + 1);
     if (!agrees(status, 2, C(31.890439769567397), C(31.890439769567397), either(C(0.00319), C(3.19e-10)))) {
-        return 47;
+        return 50;
     }
     status = wam7_energy_standard(q_2, dq_2, standard_parameters, out, out + 1);
     if (!agrees(status, 2, C(69.80033273523817), C(69.80033273523817), either(C(0.00698), C(6.98e-10)))) {
-        return 48;
+        return 51;
+    }
+    status = wam7_joint_effort_standard(q_0, dq_0, ddq_0, standard_parameters, out);
+    if (!agrees(status, 7, C(45.4650693129876), C(175.59080367588498), either(C(0.0176), C(1.76e-09)))) {
+        return 52;
+    }
+    status = wam7_joint_effort_standard(q_1, dq_1, ddq_1, standard_parameters, out);
+    if (!agrees(status, 7, C(-216.87524680642562), C(232.9513708666089), either(C(0.0233), C(2.33e-09)))) {
+        return 53;
+    }
+    status = wam7_joint_effort_standard(q_2, dq_2, ddq_2, standard_parameters, out);
+    if (!agrees(status, 7, C(-23.312459223335537), C(112.08286320586214), either(C(0.0112), C(1.12e-09)))) {
+        return 54;
     }
     status = wam7_forward_kinematics(q_0, out);
     if (!agrees(status, 112, C(56.49202890749895), C(172.59830661810145), either(C(0.0173), C(1.73e-09)))) {
-        return 49;
+        return 55;
     }
     status = wam7_forward_kinematics(q_1, out);
     if (!agrees(status, 112, C(31.48486724884126), C(162.88703663365325), either(C(0.0163), C(1.63e-09)))) {
-        return 50;
+        return 56;
     }
     status = wam7_forward_kinematics(q_2, out);
     if (!agrees(status, 112, C(41.05312170024626), C(162.35345582769992), either(C(0.0162), C(1.62e-09)))) {
-        return 51;
+        return 57;
     }
     status = wam7_jacobian(q_0, out);
     if (!agrees(status, 42, C(12.768025212383984), C(51.78386405902469), either(C(0.00518), C(5.18e-10)))) {
-        return 52;
+        return 58;
     }
     status = wam7_jacobian(q_1, out);
     if (!agrees(status, 42, C(4.901028792814824), C(46.847536835931415), either(C(0.00468), C(4.68e-10)))) {
-        return 53;
+        return 59;
     }
     status = wam7_jacobian(q_2, out);
     if (!agrees(status, 42, C(-6.708178320519482), C(48.3757470816745), either(C(0.00484), C(4.84e-10)))) {
-        return 54;
+        return 60;
     }
     status = wam7_motor_from_joint(q_0, dq_0, ddq_0, out, out + 7, out + 14);
     if (!agrees(status, 21, C(-59.80587499999998), C(1244.889625), either(C(0.124), C(1.24e-08)))) {
-        return 55;
+        return 61;
     }
     status = wam7_motor_from_joint(q_1, dq_1, ddq_1, out, out + 7, out + 14);
     if (!agrees(status, 21, C(-91.47362500000001), C(831.912375), either(C(0.0832), C(8.32e-09)))) {
-        return 56;
+        return 62;
     }
     status = wam7_motor_from_joint(q_2, dq_2, ddq_2, out, out + 7, out + 14);
     if (!agrees(status, 21, C(489.054625), C(1324.352625), either(C(0.132), C(1.32e-08)))) {
-        return 57;
+        return 63;
     }
     status = wam7_joint_from_motor(q_m_0, dq_m_0, ddq_m_0, out, out + 7, out + 14);
     if (!agrees(status, 21, C(0.3296819922154924), C(3.1421357143675324), either(C(0.000314), C(3.14e-11)))) {
-        return 58;
+        return 64;
     }
     status = wam7_joint_from_motor(q_m_1, dq_m_1, ddq_m_1, out, out + 7, out + 14);
     if (!agrees(status, 21, C(-0.05592801647222524), C(3.0412910940912337), either(C(0.000304), C(3.04e-11))))
         {
-        return 59;
+        return 65;
     }
     status = wam7_joint_from_motor(q_m_2, dq_m_2, ddq_m_2, out, out + 7, out + 14);
     if (!agrees(status, 21, C(-0.271770025875972), C(3.179521546339153), either(C(0.000318), C(3.18e-11)))) {
-        return 60;
+        return 66;
     }
     status = wam7_drive_gain(q_0, out);
     if (!agrees(status, 7, C(148.2615), C(148.2615), either(C(0.0148), C(1.48e-09)))) {
-        return 61;
+        return 67;
     }
     status = wam7_drive_gain(q_1, out);
     if (!agrees(status, 7, C(148.2615), C(148.2615), either(C(0.0148), C(1.48e-09)))) {
-        return 62;
+        return 68;
     }
     status = wam7_drive_gain(q_2, out);
     if (!agrees(status, 7, C(148.2615), C(148.2615), either(C(0.0148), C(1.48e-09)))) {
-        return 63;
+        return 69;
     }
     status = wam7_inverse_dynamics_derivatives(q_0, dq_0, ddq_0, parameters, out, out + 7, out + 56, out
         + 105);
     if (!agrees(status, 154, C(-9.400875669178696), C(160.258737797966), either(C(0.016), C(1.6e-09)))) {
-        return 64;
+        return 70;
     }
     status = wam7_inverse_dynamics_derivatives(q_1, dq_1, ddq_1, parameters, out, out + 7, out + 56, out
         + 105);
     if (!agrees(status, 154, C(-36.22701838087365), C(170.65380412105227), either(C(0.0171), C(1.71e-09)))) {
-        return 65;
+        return 71;
     }
     status = wam7_inverse_dynamics_derivatives(q_2, dq_2, ddq_2, parameters, out, out + 7, out + 56, out
         + 105);
     if (!agrees(status, 154, C(53.24220003840011), C(131.5076633967378), either(C(0.0132), C(1.32e-09)))) {
-        return 66;
+        return 72;
     }
     status = wam7_forward_dynamics_derivatives(q_0, dq_0, input_0, parameters, out, out + 7, out + 56, out
         + 105);
     if (!agrees(status, 154, C(326.8100446633017), C(4873.158169663868), either(C(3.18), C(4.87e-08)))) {
-        return 67;
+        return 73;
     }
     status = wam7_forward_dynamics_derivatives(q_1, dq_1, input_1, parameters, out, out + 7, out + 56, out
         + 105);
     if (!agrees(status, 154, C(-413.69654817640793), C(5062.89833380223), either(C(2.83), C(5.06e-08)))) {
-        return 68;
+        return 74;
     }
     status = wam7_forward_dynamics_derivatives(q_2, dq_2, input_2, parameters, out, out + 7, out + 56, out
         + 105);
     if (!agrees(status, 154, C(312.9914096499019), C(5299.788437880143), either(C(2.06), C(5.3e-08)))) {
-        return 69;
+        return 75;
     }
     status = wam7_inverse_dynamics_derivatives_standard(q_0, dq_0, ddq_0, standard_parameters, out, out + 7,
         out + 56, out + 105);
     if (!agrees(status, 154, C(-9.400875669178696), C(160.25873779796603), either(C(0.016), C(1.6e-09)))) {
-        return 70;
+        return 76;
     }
     status = wam7_inverse_dynamics_derivatives_standard(q_1, dq_1, ddq_1, standard_parameters, out, out + 7,
         out + 56, out + 105);
     if (!agrees(status, 154, C(-36.22701838087365), C(170.65380412105227), either(C(0.0171), C(1.71e-09)))) {
-        return 71;
+        return 77;
     }
     status = wam7_inverse_dynamics_derivatives_standard(q_2, dq_2, ddq_2, standard_parameters, out, out + 7,
         out + 56, out + 105);
     if (!agrees(status, 154, C(53.24220003840011), C(131.5076633967378), either(C(0.0132), C(1.32e-09)))) {
-        return 72;
+        return 78;
     }
     status = wam7_forward_dynamics_derivatives_standard(q_0, dq_0, input_0, standard_parameters, out, out + 7,
         out + 56, out + 105);
     if (!agrees(status, 154, C(326.8100446633017), C(4873.158169663868), either(C(3.18), C(4.87e-08)))) {
-        return 73;
+        return 79;
     }
     status = wam7_forward_dynamics_derivatives_standard(q_1, dq_1, input_1, standard_parameters, out, out + 7,
         out + 56, out + 105);
     if (!agrees(status, 154, C(-413.69654817640776), C(5062.89833380223), either(C(2.83), C(5.06e-08)))) {
-        return 74;
+        return 80;
     }
     status = wam7_forward_dynamics_derivatives_standard(q_2, dq_2, input_2, standard_parameters, out, out + 7,
         out + 56, out + 105);
     if (!agrees(status, 154, C(312.9914096499019), C(5299.788437880143), either(C(2.06), C(5.3e-08)))) {
-        return 75;
+        return 81;
+    }
+    status = wam7_momentum_observer_step(q_0, dq_0, input_0, dt, gain, parameters, observer_states, out, out
+        + 7);
+    if (!agrees(status, 14, C(-62.99812414618101), C(92.19191839243251), either(C(0.00922), C(9.22e-10)))) {
+        return 82;
+    }
+    status = wam7_momentum_observer_step(q_1, dq_1, input_1, dt, gain, parameters, observer_states, out, out
+        + 7);
+    if (!agrees(status, 14, C(223.77535092560217), C(453.77094329408794), either(C(0.0454), C(4.54e-09)))) {
+        return 83;
+    }
+    status = wam7_momentum_observer_step(q_2, dq_2, input_2, dt, gain, parameters, observer_states, out, out
+        + 7);
+    if (!agrees(status, 14, C(21.804077887375843), C(223.36439236995966), either(C(0.0223), C(2.23e-09)))) {
+        return 84;
+    }
+    status = wam7_momentum_observer_step_standard(q_0, dq_0, input_0, dt, gain, standard_parameters,
+        observer_states, out, out + 7);
+    if (!agrees(status, 14, C(-62.99812414618102), C(92.19191839243251), either(C(0.00922), C(9.22e-10)))) {
+        return 85;
+    }
+    status = wam7_momentum_observer_step_standard(q_1, dq_1, input_1, dt, gain, standard_parameters,
+        observer_states, out, out + 7);
+    if (!agrees(status, 14, C(223.77535092560217), C(453.770943294088), either(C(0.0454), C(4.54e-09)))) {
+        return 86;
+    }
+    status = wam7_momentum_observer_step_standard(q_2, dq_2, input_2, dt, gain, standard_parameters,
+        observer_states, out, out + 7);
+    if (!agrees(status, 14, C(21.804077887375822), C(223.3643923699597), either(C(0.0223), C(2.23e-09)))) {
+        return 87;
     }
     return 0;
 }

@@ -52,11 +52,14 @@ static const yaw3pitch_real_t ddq_m_1[] = {C(0.5625), C(-0.8125), C(-0.1875), C(
 static const yaw3pitch_real_t q_m_2[] = {C(-0.8125), C(-0.1875), C(0.4375), C(-0.9375)};
 static const yaw3pitch_real_t dq_m_2[] = {C(-0.6875), C(-0.0625), C(0.5625), C(-0.8125)};
 static const yaw3pitch_real_t ddq_m_2[] = {C(-0.5625), C(0.0625), C(0.6875), C(-0.6875)};
+static const yaw3pitch_real_t dt[] = {C(0.001)};
+static const yaw3pitch_real_t gain[] = {C(30.0), C(30.0), C(30.0), C(30.0)};
+static const yaw3pitch_real_t observer_states[] = {C(0.001), C(0.001), C(0.001), C(0.001)};
 
 static yaw3pitch_real_t out[160];
 
 /* Whether a weighted sum of n elements of out, and of their magnitudes, is as it should be. */
-static int agrees(int status, int n, yaw3pitch_real_t sum, yaw3pitch_real_t magnitude, yaw3pitch_real_t allowed)
+static int agrees(yaw3pitch_status_t status, int n, yaw3pitch_real_t sum, yaw3pitch_real_t magnitude, yaw3pitch_real_t allowed)
 {
     int i;
     for (i = 0; i < n; ++i) {
@@ -75,7 +78,7 @@ static yaw3pitch_real_t either(yaw3pitch_real_t in_float, yaw3pitch_real_t in_do
 
 int main(void)
 {
-    int status;
+    yaw3pitch_status_t status;
     status = yaw3pitch_inverse_dynamics(q_0, dq_0, ddq_0, parameters, out);
     if (!agrees(status, 4, C(148.91069414889745), C(154.33083606948165), either(C(0.0154), C(1.54e-09)))) {
         return 1;
@@ -387,6 +390,36 @@ int main(void)
         + 4, out + 20, out + 36);
     if (!agrees(status, 52, C(227.68526917684682), C(857.9449877533052), either(C(0.786), C(8.58e-09)))) {
         return 75;
+    }
+    status = yaw3pitch_momentum_observer_step(q_0, dq_0, input_0, dt, gain, parameters, observer_states, out,
+        out + 4);
+    if (!agrees(status, 8, C(-508.47628429707737), C(904.4410888766747), either(C(0.0904), C(9.04e-09)))) {
+        return 76;
+    }
+    status = yaw3pitch_momentum_observer_step(q_1, dq_1, input_1, dt, gain, parameters, observer_states, out,
+        out + 4);
+    if (!agrees(status, 8, C(831.0008700168155), C(831.0008700168155), either(C(0.0831), C(8.31e-09)))) {
+        return 77;
+    }
+    status = yaw3pitch_momentum_observer_step(q_2, dq_2, input_2, dt, gain, parameters, observer_states, out,
+        out + 4);
+    if (!agrees(status, 8, C(-872.2192886627078), C(877.4636025142388), either(C(0.0877), C(8.77e-09)))) {
+        return 78;
+    }
+    status = yaw3pitch_momentum_observer_step_standard(q_0, dq_0, input_0, dt, gain, standard_parameters,
+        observer_states, out, out + 4);
+    if (!agrees(status, 8, C(-508.47628429707737), C(904.4410888766747), either(C(0.0904), C(9.04e-09)))) {
+        return 79;
+    }
+    status = yaw3pitch_momentum_observer_step_standard(q_1, dq_1, input_1, dt, gain, standard_parameters,
+        observer_states, out, out + 4);
+    if (!agrees(status, 8, C(831.0008700168155), C(831.0008700168155), either(C(0.0831), C(8.31e-09)))) {
+        return 80;
+    }
+    status = yaw3pitch_momentum_observer_step_standard(q_2, dq_2, input_2, dt, gain, standard_parameters,
+        observer_states, out, out + 4);
+    if (!agrees(status, 8, C(-872.2192886627078), C(877.4636025142388), either(C(0.0877), C(8.77e-09)))) {
+        return 81;
     }
     return 0;
 }

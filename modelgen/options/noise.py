@@ -1,0 +1,22 @@
+"""How far the inputs of an identified arm are from those of its model."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True)
+class Noise:
+    """By coordinate; `largest` and `input` in the unit of the inputs, of records that were not fitted.
+
+    input: root mean square of the inputs' errors. largest: their largest magnitude. correlation: time over
+    which the errors stay alike [s]. rest_speed: below which a joint counts as resting [rad/s, m/s]. cutoff:
+    of the filters of the records [Hz]. duration: of the records [s].
+    """
+
+    input: tuple[float, ...]
+    largest: tuple[float, ...]
+    correlation: tuple[float, ...]
+    rest_speed: tuple[float, ...]
+    cutoff: float
+    duration: float
