@@ -60,7 +60,8 @@ class States:
         given = {"q": self.q, "dq": self.dq, "ddq": self.ddq, "parameters": parameters}
         named = {a.name: given.get(a.name, np.zeros(a.size)) for a in function.arguments}
         gains = np.array([drive.gain(self.q[:, n]) for n, drive in enumerate(self.drives)])
-        return np.asarray(NumpyFunction(function)(**named)) * gains.T
+        found: Array = np.asarray(NumpyFunction(function)(**named)) * gains.T
+        return found
 
     def _fastest(self, n: int) -> Array:
         """Highest speed of a joint in every state (N,)."""
