@@ -10,7 +10,7 @@ from modelgen.api.model import total
 from modelgen.api.results import Shown, Table
 from modelgen.description import Arm
 from modelgen.errors import InputError, suggest
-from modelgen.functions.parameters_file import values_beside, values_of
+from modelgen.functions.parameters_file import read_identification, values_beside, values_of
 from modelgen.generation import TARGETS, Budget, GeneratedArm, Report
 from modelgen.generation import generate as generate_folders
 from modelgen.options import GenerationOptions, ModelOptions, changed
@@ -107,6 +107,7 @@ def generate(
     generation: GenerationOptions | None = None,
     *,
     parameters: Path | str | Mapping[str, Any] | None = None,
+    identification: Path | str | Mapping[str, Any] | None = None,
     check: bool = False,
     progress: Progress = silent,
 ) -> Generated:
@@ -126,6 +127,9 @@ def generate(
         Values of the only arm's base parameters to be folded in: <arm>_parameters.yaml, names with numbers,
         or the parameters of an identification. Default: <arm>_parameters.yaml beside the description,
         where there is one.
+    identification : Path, str or mapping, optional
+        identification.json of the only arm, or what it holds: its parameters are folded in, and gains and
+        thresholds of the functions that watch the arm are set by its noise.
     check : bool
         Compare with what is there and write nothing.
     progress : callable, optional
@@ -144,9 +148,15 @@ def generate(
     chosen, more = options or ModelOptions(), generation or GenerationOptions()
     wanted = [arms] if isinstance(arms, Arm) else list(arms)
     budget = _budget(more)
-    own = values_beside(wanted, chosen) if parameters is None else {}
+    own = values_beside(wanted, chosen) if parameters is None and identification is None else {}
+    names = [arm.name for arm in wanted]
+    if identification is not None:
+        if parameters is not None:
+            raise InputError("--identification holds parameters: give it or --parameters, not both")
+        values, noise = read_identification(identification, names)
+        chosen = changed(chosen, {"identified": values, "noise": noise})
     if parameters is not None:
-        chosen = changed(chosen, {"identified": values_of(parameters, [arm.name for arm in wanted])})
+        chosen = changed(chosen, {"identified": values_of(parameters, names)})
     done = 0
 
     def told(name: str) -> None:

@@ -11,8 +11,9 @@ from modelgen.functions.combined import combined_functions
 from modelgen.functions.derivatives import derivative_functions, row_wise_derivatives
 from modelgen.functions.dynamics import Dynamics
 from modelgen.functions.kinematic import kinematic_functions
+from modelgen.functions.levels import levels
 from modelgen.functions.nominal import base_of, nominal_values
-from modelgen.functions.objects import Function, Model
+from modelgen.functions.objects import Function, Levels, Model
 from modelgen.functions.options import Options, prepared
 from modelgen.functions.parametric import (
     base_values,
@@ -82,8 +83,16 @@ def build_model(arm: Arm, options: Options = DEFAULTS) -> Model:
         tuple(arm.symbols) if options.runtime_geometry else (),
         tuple(real.state_names()),
         tuple(nominal.values()),
+        _levels(a, options),
         (*fluid_remarks(plain, grouping), *_gain_remarks(options, arm)),
     )
+
+
+def _levels(a: Assembly, options: Options) -> Levels | None:
+    """Where there is noise to set them by."""
+    if options.noise is None or not options.identified or not options.watch:
+        return None
+    return levels(a, options.noise, [options.identified[b.name] for b in a.grouping.base])
 
 
 def _gain_remarks(options: Options, arm: Arm) -> list[str]:

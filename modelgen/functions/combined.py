@@ -18,10 +18,15 @@ ORDER = ("q", "sin_q", "cos_q", "dq", "ddq", "dq_r", "ddq_r", "input", "q_m", "d
 TAKEN = frozenset(
     (
         "check_parameters",
+        "levels",
         "max",
         "min",
         "motors_onto_strokes",
         "model",
+        "monitor_alarms",
+        "observer_alarms",
+        "observer_gain",
+        "observer_threshold",
         "onto_strokes",
         "pair_t",
         "plant",

@@ -101,6 +101,25 @@ class SparsityTable:
 
 
 @dataclass(frozen=True)
+class Levels:
+    """For the observer by joint: gain [1/s], threshold [N m, N].
+
+    For the monitor by parameter: its name; start, what it is where nothing changed; std, what identification
+    leaves open of it. correlation: time over which errors of the inputs stay alike [s]; memory [s]; level:
+    standard deviations.
+    """
+
+    gain: tuple[float, ...]
+    threshold: tuple[float, ...]
+    names: tuple[str, ...]
+    start: tuple[float, ...]
+    std: tuple[float, ...]
+    correlation: float
+    memory: float
+    level: float
+
+
+@dataclass(frozen=True)
 class Model:
     """Everything that a backend needs of one arm."""
 
@@ -112,4 +131,5 @@ class Model:
     geometry: tuple[str, ...] = ()  # names of the run-time geometry, in the order of its input
     states: tuple[str, ...] = ()  # names of the effects' states
     nominal: tuple[float, ...] = ()  # values of the base parameters, where they were asked for
+    levels: Levels | None = None  # of the functions that watch, where noise is known
     remarks: tuple[str, ...] = ()  # for the user: what can be told apart, and what cannot

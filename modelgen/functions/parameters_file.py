@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from collections.abc import Mapping, Sequence
 from math import isfinite
 from pathlib import Path
@@ -16,6 +17,7 @@ from modelgen.errors import InputError
 from modelgen.functions.objects import Model
 from modelgen.numeric import Array
 from modelgen.options import ModelOptions
+from modelgen.options.noise import Noise
 
 
 def values_of(given: Path | str | Mapping[str, Any] | None, arms: Sequence[str]) -> dict[str, float]:
@@ -69,6 +71,47 @@ def read_values(who: str, file: Path, arms: Sequence[str]) -> dict[str, float]:
             f"give --arm {data.get('arm')}"
         )
     return {k: float(v) for k, v in values.items()}
+
+
+def read_identification(
+    given: Path | str | Mapping[str, Any], arms: Sequence[str]
+) -> tuple[dict[str, float], Noise]:
+    """Values of the base parameters by name, and the noise: of identification.json, or of what it holds.
+
+    Raises InputError where it cannot be read, is another arm's, or holds no noise.
+    """
+    who, data = "--identification", given
+    if isinstance(given, str | Path):
+        who = f"--identification {given}"
+        try:
+            data = json.loads(Path(given).read_text(encoding="utf-8"))
+        except OSError as error:
+            raise InputError(f"{who}: {(error.strerror or str(error)).lower()}") from error
+        except ValueError as error:
+            raise InputError(f"{who}: cannot be read as JSON; expected identification.json") from error
+    if not isinstance(data, Mapping) or not isinstance(data.get("parameters"), list):
+        raise InputError(f"{who}: expected what modelgen identify writes as identification.json")
+    if list(arms) != [data.get("arm")]:
+        raise InputError(
+            f"{who}: belongs to the arm '{data.get('arm')}', found {', '.join(arms)}; "
+            f"give --arm {data.get('arm')}"
+        )
+    if not isinstance(data.get("noise"), Mapping):
+        raise InputError(f"{who}: holds no noise; identify again, with a test record")
+    try:
+        noise = data["noise"]
+        lists = (noise["rmse"], noise["largest"], noise["correlation_s"], noise["rest_speed"])
+        values = {p["name"]: float(p["value"]) for p in data["parameters"]}
+        spreads = {p["name"]: float(p["std"]) for p in data["parameters"] if p["std"] is not None}
+        rows = [tuple(float(x) for x in row) for row in lists]
+        found = Noise(
+            rows[0], rows[1], rows[2], rows[3], float(noise["cutoff_hz"]), float(noise["duration_s"]), spreads
+        )
+    except (KeyError, TypeError, ValueError) as error:
+        raise InputError(f"{who}: expected what modelgen identify writes, found {error} amiss") from error
+    if not all(x > 0 and isfinite(x) for x in (*found.input, *found.correlation, found.duration)):
+        raise InputError(f"{who}: expected errors, times and a duration above zero under `noise`")
+    return values, found
 
 
 def base_vector(model: Model, values: Mapping[str, float]) -> Array:

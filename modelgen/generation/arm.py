@@ -116,6 +116,8 @@ def shown_options(options: Options) -> dict[str, str]:
     if options.identified:
         values = json.dumps(dict(options.identified), sort_keys=True)
         shown["identified"] = hashlib.sha256(values.encode()).hexdigest()[:16]
+    if options.noise is not None:
+        shown["noise"] = hashlib.sha256(repr(options.noise).encode()).hexdigest()[:16]
     return shown
 
 

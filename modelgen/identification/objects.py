@@ -10,6 +10,7 @@ from modelgen.identification.consistent import Consistent
 from modelgen.identification.gains import Gain
 from modelgen.identification.instrumental import Comparison
 from modelgen.numeric import Array
+from modelgen.options.noise import Noise
 from modelgen.regression.least_squares import Solution
 
 POOR = 30.0  # % of relative standard deviation from which a parameter is called poorly determined
@@ -43,6 +44,7 @@ class Validation:
     """On test records, by joint, in the unit that the log carried: rmse (n,), nrmse (n,) in % of the effort.
 
     t: (M,) [s]; measured, predicted: (M, n), records one after the other. rows: (n,), how many were judged.
+    noise: of the inputs there.
     """
 
     unit: tuple[str, ...]
@@ -52,6 +54,7 @@ class Validation:
     t: Array
     measured: Array
     predicted: Array
+    noise: Noise | None = None
 
 
 @dataclass(frozen=True)

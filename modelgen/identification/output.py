@@ -33,6 +33,7 @@ def to_json(found: Identification) -> dict[str, Any]:
         "verdict": verdict(found),
         "doubts": list(found.doubts),
         "least_squares": _least_squares(found.comparison),
+        **_noise(found),
         **_gains(found),
         **_physical(found),
     }
@@ -57,6 +58,23 @@ def _least_squares(c: Comparison | None) -> dict[str, Any] | None:
         "degrees": c.degrees,
         "threshold": c.threshold,
         "instrument": "simulated" if c.simulated else "period",
+    }
+
+
+def _noise(found: Identification) -> dict[str, Any]:
+    """What gains and thresholds of the watch are set by; nothing without a test record."""
+    noise = None if found.test is None else found.test.noise
+    if noise is None:
+        return {}
+    return {
+        "noise": {
+            "rmse": list(noise.input),
+            "largest": list(noise.largest),
+            "correlation_s": list(noise.correlation),
+            "rest_speed": list(noise.rest_speed),
+            "cutoff_hz": noise.cutoff,
+            "duration_s": noise.duration,
+        }
     }
 
 

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, field
 
 
 @dataclass(frozen=True)
@@ -11,7 +12,8 @@ class Noise:
 
     input: root mean square of the inputs' errors. largest: their largest magnitude. correlation: time over
     which the errors stay alike [s]. rest_speed: below which a joint counts as resting [rad/s, m/s]. cutoff:
-    of the filters of the records [Hz]. duration: of the records [s].
+    of the filters of the records [Hz]. duration: of the records [s]. parameters: standard deviations of the
+    base parameters by name.
     """
 
     input: tuple[float, ...]
@@ -20,3 +22,4 @@ class Noise:
     rest_speed: tuple[float, ...]
     cutoff: float
     duration: float
+    parameters: Mapping[str, float] = field(default_factory=dict)

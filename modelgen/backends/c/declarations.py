@@ -8,6 +8,7 @@ from dataclasses import dataclass
 
 from modelgen.backends.c.dialect import arrays, destinations, literal
 from modelgen.backends.c.lengths import argument_length, array_lengths
+from modelgen.backends.c.levels import levels
 from modelgen.backends.c.strokes import strokes, wrappers
 from modelgen.backends.documentation import (
     argument_row,
@@ -131,6 +132,7 @@ def header_values(model: Model, functions: list[FunctionText]) -> dict[str, obje
         "nominal": bool(model.nominal),
         "linked": _linked(model),
         "functions": functions,
+        "levels": levels(model),
         "strokes": strokes(model),
         "wrappers": wrappers(model),
         "motor_unit": _motor_unit(model),
@@ -150,6 +152,9 @@ def _linked(model: Model) -> list[str]:
     suffixes = [check.suffix for check in parameter_checks(model)]
     names = [function.name for function in model.functions]
     names += [*(f"check_parameters{suffix}" for suffix in suffixes), "model", "sincos"]
+    if model.levels is not None:
+        names += ["observer_gain", "observer_threshold", "observer_alarms"]
+        names += ["monitor_alarms"] if model.levels.start else []
     names += [stroke.name for stroke in strokes(model)]
     if "regressor_packed" in names:
         names += ["regressor_rows", "regressor_columns"]

@@ -8,6 +8,7 @@ from collections.abc import Mapping
 
 from modelgen.backends.c.declarations import FunctionText, function_text, header_values, parameter_checks
 from modelgen.backends.c.dialect import INDENT, literal
+from modelgen.backends.c.levels import levels
 from modelgen.backends.c.source import statements, unrolled
 from modelgen.backends.c.strokes import strokes
 from modelgen.backends.documentation import function_sections, unit
@@ -58,6 +59,8 @@ def c_files(model: Model, provenance: Provenance) -> dict[str, str]:
     if model.nominal:
         rows = _nominal(model)
         files[f"src/{arm}_nominal_parameters.c"] = render("c/nominal.c.j2", **common, rows=rows)
+    if model.levels is not None:
+        files[f"src/{arm}_levels.c"] = render("c/levels.c.j2", **common, levels=levels(model))
     for stroke in strokes(model):
         files[f"src/{arm}_{stroke.name}.c"] = render("c/strokes.c.j2", **common, stroke=stroke)
     digest = hashlib.sha256("".join(files[name] for name in sorted(files)).encode()).hexdigest()

@@ -17,6 +17,14 @@ OnlyArms = Annotated[
     list[str] | None, typer.Option(metavar="NAME", help="Only this arm; repeatable.", show_default=False)
 ]
 OutFolder = Annotated[Path, typer.Option(metavar="DIR", help="Folder that gets one folder per arm.")]
+Identified = Annotated[
+    Path | None,
+    typer.Option(
+        metavar="FILE",
+        help="identification.json: folds in its parameters, and sets gains and thresholds of the watch.",
+        show_default=False,
+    ),
+]
 Verbose = Annotated[bool, typer.Option("--verbose", help="Operations of every function too.")]
 Check = Annotated[bool, typer.Option("--check", help="Write nothing; exit 1 where DIR differs.")]
 
@@ -32,6 +40,7 @@ def generate(
     options: ModelOptions,
     generation: GenerationOptions,
     parameters: Parameters = None,
+    identification: Identified = None,
     verbose: Verbose = False,
     as_json: Json = False,
 ) -> None:
@@ -43,7 +52,14 @@ def generate(
     file, found = selected(arms, arm or [])
     with progress_bar() as progress:
         result = generated(
-            found, out, options, generation, parameters=parameters, check=check, progress=progress
+            found,
+            out,
+            options,
+            generation,
+            parameters=parameters,
+            identification=identification,
+            check=check,
+            progress=progress,
         )
     for one in found:
         for note in one.notes:
