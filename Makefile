@@ -9,6 +9,7 @@
 #   make bench-scale  chains of 2 to 50 joints and trees, into the same page
 #   make bench-identification  long logs, beside Pinocchio's regressor in a loop; growth with the samples
 #   make bench-generation  CPU time of generation, per arm and over the number of joints
+#   make bench-robots  import every robot of example-robot-data, against Pinocchio and MuJoCo: docs/imported-robots.md
 #   make bench-fleet  diagnose 200 simulated arms as one job, into build/fleet; CPU time of a diagnosis over its size
 #   make docs    the documentation as HTML, with the reference: build/docs/index.html
 #   make size    flash, stack and instructions of every function on a Cortex-M4F
@@ -27,7 +28,7 @@ BIN := $(VENV)/bin
 INSTALLED := $(VENV)/.installed
 TESTED := $(VENV)/.installed-test
 
-.PHONY: run check test pytest lint format bench bench-scale bench-identification bench-generation bench-fleet docs size \
+.PHONY: run check test pytest lint format bench bench-scale bench-identification bench-generation bench-robots bench-fleet docs size \
     run-examples prove fuzz hidden blind mutations clean
 
 EXAMPLE := examples/diagnosis
@@ -72,6 +73,10 @@ bench-identification: $(TESTED)
 
 bench-generation: $(TESTED)
 	$(BIN)/python benchmarks/generate.py
+
+bench-robots: $(TESTED)
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check --editable '.[robots]'
+	$(BIN)/python benchmarks/robots.py --accept
 
 bench-fleet: $(TESTED)
 	$(BIN)/python benchmarks/fleet.py build/fleet

@@ -52,6 +52,7 @@ GUIDES = {
         "from-a-drawing",
         "from-a-urdf",
         "importing",
+        "imported-robots",
         "drawing",
         "exporting",
         "python",
