@@ -58,6 +58,9 @@ class Record:
         moved to their uniform axis.
     effort_hold : str or float
         When the efforts were read: "following", "previous" or "instant", or their delay [s].
+    counts : tuple of float
+        Step of the logged positions by joint, in the unit that was logged, 0 where there is none; empty: not
+        known, to be read off the samples.
     hold_known : str
         What says so: "mapping", "readings", or nothing, where it is the default.
 
@@ -94,6 +97,7 @@ class Record:
     jitter: float = 0.0
     effort_hold: str | float = "following"
     hold_known: str = ""
+    counts: tuple[float, ...] = ()
 
     @property
     def n(self) -> int:

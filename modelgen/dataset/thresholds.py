@@ -125,6 +125,30 @@ class DatasetThresholds(Group):
         "The cut-off is as high as leaves noise of the positions this share of the accelerations' power.",
         "keeps the bias of least squares by noise in the regressor small (Gautier 1997)",
     )
+    max_speed_noise_share: float = entry(
+        1e-4,
+        "of the power",
+        "The positions' filter is narrower where rounding feigns a larger share of the speeds' power.",
+        "dry friction changes sign with the speed: chosen by the coverage of benchmarks/deviations.py",
+    )
+    cutoff_rounding_share: float = entry(
+        3e-4,
+        "of the power",
+        "The cut-off is as high as lets rounding feign this share of the accelerations' power.",
+        "an inertia's share may be a fifth of it; chosen by the coverage of benchmarks/deviations.py",
+    )
+    max_rounding_share: float = entry(
+        1e-2,
+        "of the power",
+        "Positions are too coarse where rounding feigns a larger share of the accelerations' power.",
+        "thirty times what the cut-off allows; chosen by the coverage of benchmarks/deviations.py",
+    )
+    least_position_cutoff_over_cutoff: float = entry(
+        2.0,
+        "1",
+        "However coarse the positions are, their filter has so many times the cut-off of the parallel one.",
+        "loses 0.4 % at the cut-off",
+    )
     bandwidth_power: float = entry(
         0.9,
         "of the power",

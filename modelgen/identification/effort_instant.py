@@ -2,18 +2,21 @@
 
 The delay of each joint's efforts is fitted beside the parameters by Gauss and Newton's steps. Its column is
 the slope of the efforts as the model has them, in which their noise has no part. The columns of inertia and
-friction are slopes of others, and what is left for the delay is little: its deviation says how little.
+friction are slopes of others, and what is left for the delay is little: its deviation says how little. What
+the rounding of the positions does to it is seen by rounding them once more (Cook and Stefanski 1994).
 """
 
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 
-from modelgen.dataset import Prepared, Record, Settings, choose, prepare
+from modelgen.dataset import Prepared, Record, Settings, choose, drives_of, prepare
 from modelgen.dataset.processing.filters import advanced
 from modelgen.dataset.processing.instants import EffortInstant, fitting, with_hold
+from modelgen.dataset.processing.rounding import position_steps
 from modelgen.dataset.thresholds import USUAL, DatasetThresholds
 from modelgen.description import Arm
 from modelgen.errors import InputError
@@ -27,6 +30,7 @@ STEPS = 10  # of Gauss and Newton, at most
 LONGEST = 2.0  # samples, of a step
 SETTLED = 0.02  # samples, or this part of the deviation, at which they end
 ELEMENTS = 25_000_000  # of the regressor at full rate, beyond which the beginnings of the records do
+DRAWS = 4  # of further roundings of the positions, where the data would tell without
 APART = 4.0  # deviations by which a joint may be from all, if it is a matter of the log
 
 
@@ -67,21 +71,47 @@ def _delay(
     model, evaluator = build_model(arm, chosen), Evaluator(reduced(arm, chosen))
     n, p = records[0].n, len(model.grouping.base)
     longest = max(limits.min_samples, ELEMENTS // (n * p * len(records)))
+    beginnings = [r.part(0, min(len(r.t), longest)) for r in records]
     try:
         settings = choose(list(records), Settings(thresholds=limits))
-        beginnings = [r.part(0, min(len(r.t), longest)) for r in records]
-        fit = _Fit([prepare(r, settings) for r in beginnings], model, evaluator)
-        found = fit.delays()
+        prepared = [prepare(r, settings) for r in beginnings]
+        delays, deviations = _Fit(prepared, model, evaluator).delays()
+        if not np.isfinite(deviations).any():
+            return None
+        if _common(delays, deviations)[1] <= limits.max_instant_std and position_steps(records[0]).any():
+            square = np.zeros(n)
+            for seed in range(DRAWS):
+                again = [prepare(_rounded_anew(r, seed), settings) for r in prepared]
+                square += (_Fit(again, model, evaluator).delays()[0] - delays) ** 2 / DRAWS
+            deviations = np.sqrt(deviations**2 + np.where(np.isfinite(square), square, np.inf))
     except (InputError, np.linalg.LinAlgError, FloatingPointError):
         return None  # what is wrong is said where the parameters are found
-    if found is None:
+    told = np.isfinite(deviations)
+    if not told.any():
         return None
-    delays, deviations = found
-    weights = 1.0 / deviations**2
-    common = float(weights @ delays / weights.sum())
-    std = float(weights.sum() ** -0.5)
+    common, std = _common(delays, deviations)
     apart = np.maximum(APART * deviations, limits.instant_tolerance)
-    return common, std, bool((np.abs(delays - common) <= apart).all())
+    return common, std, bool((np.abs(delays - common) <= apart)[told].all())
+
+
+def _common(delays: Array, deviations: Array) -> tuple[float, float]:
+    """Mean of the joints' delays and its deviation."""
+    weights = 1.0 / deviations**2
+    used = np.where(weights > 0.0, delays, 0.0)
+    return float(weights @ used / weights.sum()), float(weights.sum() ** -0.5)
+
+
+def _rounded_anew(p: Prepared, seed: int) -> Record:
+    """The record with its smoothed positions rounded once more, at other places of the steps."""
+    random, record = np.random.default_rng(seed), p.record
+    q, motor = p.q.copy(), p.motor.copy()
+    drives = drives_of(record.arm) if record.arm is not None else ()
+    for k, step in enumerate(position_steps(record)):
+        if step:
+            place = step * random.uniform()
+            q[:, k] = step * np.rint((q[:, k] + place) / step) - place
+            motor[:, k] = drives[k].motor(q[:, k]) if drives else q[:, k]
+    return replace(record, q=q, motor=motor)
 
 
 class _Fit:
@@ -101,13 +131,13 @@ class _Fit:
             r.parallel(full * r.awake[:, :, None]) for r, full in zip(self.records, self.full, strict=True)
         ]
 
-    def delays(self) -> tuple[Array, Array] | None:
-        """Delays of the joints that tell (k,) and their deviations [samples]; None where none does."""
+    def delays(self) -> tuple[Array, Array]:
+        """Delays of the joints (n,) and their deviations [samples], infinite for those that do not tell."""
         first = self.records[0].record
         delays = np.full(self.n, first.hold / first.step)
         efforts = self._efforts(delays)
         if sum(int(m.sum()) for m in self.moving) < 3 * (self.p + self.n):
-            return None
+            return delays, np.full(self.n, np.inf)
         theta = Regression(efforts, self.columns, self.moving).solve("wls").theta
         self._evaluate(theta)
         told, deviations = np.ones(self.n, dtype=bool), np.full(self.n, np.inf)
@@ -122,8 +152,7 @@ class _Fit:
             efforts = self._efforts(delays)
         else:
             told &= np.abs(moved) <= deviations
-        told &= deviations > 0.0
-        return (delays[told], deviations[told]) if told.any() else None
+        return delays, np.where(told & (deviations > 0.0), deviations, np.inf)
 
     def _step(self, efforts: Sequence[Array], theta: Array) -> Solution:
         """Parameters, and the changes of the delays after them."""

@@ -9,8 +9,8 @@ import numpy as np
 
 from modelgen.dataset import Prepared, prepare
 from modelgen.dataset.drives import drives_of
+from modelgen.dataset.processing.content import motion_bandwidth
 from modelgen.dataset.processing.filters import low_pass
-from modelgen.dataset.processing.settings import motion_bandwidth
 from modelgen.description import Arm
 from modelgen.errors import InputError
 from modelgen.simulation.control import Reference, controller

@@ -24,6 +24,7 @@ from modelgen.dataset import (
 )
 from modelgen.dataset import preset as processing
 from modelgen.dataset.inspection import RecordsInspected, inspect_records
+from modelgen.dataset.processing.content import check_coarse
 from modelgen.dataset.processing.periods import period_of, with_whole_rows
 from modelgen.description import Arm
 from modelgen.errors import InputError
@@ -158,6 +159,9 @@ def _whole(
     asked = _settings(o)(1 / training[0].step)
     periods = [period_of(x, None) for x in training]
     chosen = with_whole_rows(choose(training, asked), periods)
+    if o.cutoff is None and o.preset == "default":
+        for record in training:
+            check_coarse(record, chosen.cutoff)
     progress("identifying", 0, None)
     fitted, held = [[prepare(x, chosen) for x in part] for part in (training, testing)]
     tracking = Tracking(

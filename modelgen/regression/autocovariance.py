@@ -3,7 +3,8 @@
 A sandwich B (sum of X' G X) B: B the inverse of the weighted normal matrix, G the covariance of each joint's
 noise, an autoregressive model. Residuals are not the noise: the fit has taken a part of it, most of it at the
 slow frequencies at which the columns live, and their autocovariance alone claims too much. What the fit takes
-follows from the model of the noise itself; it is added to what is seen, by fixed-point iteration.
+follows from the model of the noise itself; it is added to what is seen, by fixed-point iteration. Where
+few rows are left the power of the noise is uncertain too: deviations are those of Student's distribution.
 """
 
 from __future__ import annotations
@@ -20,6 +21,7 @@ from modelgen.numeric import Array
 ORDER = 12  # of the autoregressive models
 ROUNDS = 30  # of the iteration, at most
 CHANGE = 1e-3  # of the power, at which it ends
+FEW = 4.0  # degrees of freedom of a joint's noise, at least
 MANY = 1000  # rows per parameter, beyond which the fit has taken nothing that counts
 
 
@@ -43,7 +45,19 @@ def sandwich(columns: Sequence[Array], residuals: Sequence[Array], weights: Sequ
         before, noise = noise, [a + b for a, b in zip(seen, taken, strict=True)]
         if all(abs(a[0] - b[0]) <= CHANGE * a[0] for a, b in zip(noise, before, strict=True)):
             break
-    return np.asarray(bread @ _meat(x, noise)[0] @ bread)
+    few = [r * _student(own, r, bread, number) for own, r, number in zip(x, noise, count, strict=True)]
+    return np.asarray(bread @ _meat(x, few)[0] @ bread)
+
+
+def _student(own: Sequence[Array], r: Array, bread: Array, count: int) -> float:
+    """Variance of Student's distribution over that of the normal one, for what a joint's noise is known by.
+
+    Rows count for as many as tell its power (Bartlett 1946), less the parameters that they are fitted by.
+    """
+    fitted = sum(float(np.vdot(part @ bread, part)) for part in own)
+    independent = count / (1.0 + 2.0 * float(np.sum((r[1:] / r[0]) ** 2))) if r[0] > 0.0 else float(count)
+    freedom = max(FEW, independent - fitted)
+    return freedom / (freedom - 2.0)
 
 
 def autocovariance(parts: Sequence[Array], count: int) -> Array:

@@ -19,9 +19,9 @@ from modelgen.dataset import (
     prepare,
     read,
 )
+from modelgen.dataset.processing.content import check_coarse, chosen_cutoff, motion_bandwidth
 from modelgen.dataset.processing.instants import fitting
 from modelgen.dataset.processing.periods import period_of
-from modelgen.dataset.processing.settings import chosen_cutoff, motion_bandwidth
 from modelgen.dataset.processing.stamps import true_stamps
 from modelgen.dataset.processing.timing import Survey
 from modelgen.dataset.reading.plausible import check_efforts
@@ -170,7 +170,11 @@ def cases(folder: Path) -> dict[str, tuple[Value, Seen]]:
         "max_range_excess": (0.001, lambda limits: range_seen(limits, spec)),
         "max_shared_samples": (20, shared),
         "max_rate_difference": (1e-3, of_rates),
-        "max_noise_share": (0.1, lambda limits: chosen_cutoff(coarse(RECORD), limits)),
+        "max_noise_share": (0.1, lambda limits: chosen_cutoff(noisy(), limits)),
+        "cutoff_rounding_share": (0.1, lambda limits: chosen_cutoff(coarse(RECORD), limits)),
+        "max_speed_noise_share": (0.1, lambda limits: chosen(limits, coarse(RECORD)).position_cutoff),
+        "least_position_cutoff_over_cutoff": (3.0, lambda limits: chosen(limits, rough()).position_cutoff),
+        "max_rounding_share": (1.0, lambda limits: refusal(lambda: check_coarse(rough(), 20.0, limits))),
         "bandwidth_power": (0.5, lambda limits: motion_bandwidth(RECORD, limits)),
         "cutoff_over_bandwidth": (25.0, lambda limits: chosen_cutoff(coarse(RECORD), limits)),
         "min_cutoff_periods": (250.0, lambda limits: chosen_cutoff(coarse(RECORD), limits)),
@@ -219,6 +223,18 @@ def efforts(limit: float, high: float = 1.0, share: float = 1.0) -> Seen:
     r = Record("log", t, q, q, given, ones, ("A", "A"))
     drives = drives_of(arm)
     return lambda limits: refusal(lambda: check_efforts(r, ("i1", "i2"), arm, drives, limits))
+
+
+def noisy() -> Record:
+    """Positions with a noise of 0.1 mrad."""
+    q = RECORD.q + 1e-4 * np.random.default_rng(2).normal(size=RECORD.q.shape)
+    return replace(RECORD, q=q, motor_side=(False, False))
+
+
+def rough() -> Record:
+    """Positions of seven bits."""
+    q = 2 * np.pi / 128 * np.round(RECORD.q / (2 * np.pi / 128))
+    return replace(RECORD, q=q, motor_side=(False, False))
 
 
 def averaged(limits: DatasetThresholds) -> str:

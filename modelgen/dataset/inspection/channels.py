@@ -15,6 +15,7 @@ from modelgen.dataset.inspection.guesses import guessed_unit, kind_of, time_of, 
 from modelgen.dataset.mapping.units import TIMES
 from modelgen.dataset.objects import Reader, Record
 from modelgen.dataset.processing.periods import period_of
+from modelgen.dataset.processing.rounding import resolution
 from modelgen.dataset.reading.column_table import Log
 from modelgen.dataset.reading.plausible import doubtful_unit
 from modelgen.dataset.reading.read import read
@@ -31,7 +32,6 @@ _POSITION = re.compile(r"qm?[1-9][0-9]*")
 REST_SAMPLES = 5  # on either side, over which a position that stands does not move
 RESTING = 0.01  # of what it moves in as many samples otherwise
 SPIKE = 5.0  # of the 99 % quantile of the steps
-_WHOLE = 0.01  # of a resolution, by which a multiple of it may miss a whole number
 
 
 @dataclass(frozen=True)
@@ -235,9 +235,7 @@ def _channel(name: str, unit: str, values: Array) -> Channel:
     guess = "" if unit else guessed_unit(name, values)
     rest = _at_rest(finite) if kind_of(name) == "position" and len(finite) == len(values) else None
     missing = len(values) - len(finite)
-    return Channel(
-        name, unit, low, high, _resolution(finite), repeated, missing, guess, rest, _spikes(finite)
-    )
+    return Channel(name, unit, low, high, resolution(finite), repeated, missing, guess, rest, _spikes(finite))
 
 
 def _at_rest(values: Array) -> float:
@@ -259,19 +257,3 @@ def _spikes(values: Array) -> int:
     usual = float(np.quantile(np.abs(np.diff(values)), 0.99))
     alone = (up * down > 0.0) & (np.minimum(np.abs(up), np.abs(down)) > SPIKE * max(usual, 1e-300))
     return int(np.count_nonzero(alone & (np.abs(after - before) < 0.5 * np.abs(up))))
-
-
-def _resolution(values: Array) -> float | None:
-    """The step that all differences of readings are multiples of, None where there is none."""
-    # Two decimal readings differ by rounding alone where they were one number.
-    smallest = 1e-12 * float(np.max(np.abs(values)))
-    steps = np.diff(np.unique(values))
-    steps = steps[steps > smallest]
-    if len(steps) < 2:
-        return None
-    step = float(steps.min())
-    multiples = steps / step
-    if np.max(np.abs(multiples - np.round(multiples))) > _WHOLE:
-        return None
-    # The mean over all steps has more digits than the smallest.
-    return float(steps.sum() / np.round(multiples).sum())

@@ -5,16 +5,14 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from itertools import pairwise
 
 import numpy as np
-from scipy import signal
 
 from modelgen.dataset.objects import Record
+from modelgen.dataset.processing.content import chosen_cutoff, quiet_speeds
 from modelgen.dataset.processing.filters import differences, low_pass
 from modelgen.dataset.thresholds import USUAL, DatasetThresholds
 from modelgen.errors import InputError
-from modelgen.numeric import Array
 
 
 @dataclass(frozen=True)
@@ -114,6 +112,9 @@ def choose(records: Record | Sequence[Record], settings: Settings | Chosen | Non
     position = settings.position_cutoff
     if position is None:
         position = limits.position_cutoff_over_cutoff * cutoff
+        if settings.cutoff is None:
+            quiet = min(quiet_speeds(record, limits) for record in several)
+            position = min(position, max(quiet, limits.least_position_cutoff_over_cutoff * cutoff))
         position = 0.0 if position > limits.max_position_cutoff * rate else position
     _check(first, cutoff, position)
     factor = settings.factor
@@ -157,50 +158,6 @@ def _check(record: Record, cutoff: float, position_cutoff: float) -> None:
                 f"{record.name}: found the {name} {value:g} Hz, expected one below half the rate, "
                 f"{0.5 * rate:.6g} Hz"
             )
-
-
-def chosen_cutoff(record: Record, limits: DatasetThresholds = USUAL) -> float:
-    """Parallel cut-off [Hz]: as high as the noise of the positions allows.
-
-    Noise in a regressor biases least squares. What the accelerations' spectrum holds beyond its valley, and
-    the valley's level below it, counts as noise: it makes up a thousandth of their power at most. Bounded
-    by the motion's own bandwidth, and by the record's rate and length.
-    """
-    rate = 1.0 / record.step
-    length = len(record.t) * record.step
-    found = [_frequencies(record.q[:, k], rate, limits) for k in range(record.n)]
-    quiet = min(f for f, _ in found)
-    content = max(f for _, f in found)
-    least = max(limits.cutoff_over_bandwidth * content, limits.min_cutoff_periods / length)
-    return float(min(max(quiet, least), rate / limits.samples_per_cutoff_period))
-
-
-def motion_bandwidth(record: Record, limits: DatasetThresholds = USUAL) -> float:
-    """Frequency [Hz] below which nine tenths of the power of every joint's speed lie, noise apart."""
-    return max(_frequencies(q, 1.0 / record.step, limits)[1] for q in record.q.T)
-
-
-def _frequencies(q: Array, rate: float, limits: DatasetThresholds) -> tuple[float, float]:
-    """Highest cut-off [Hz] that the noise of a position q (N,) allows, and the bandwidth of the motion."""
-    speed = np.gradient(q, 1.0 / rate)[1:-1]  # the ends are one-sided
-    window = int(min(len(speed), max(64, 10.0 * rate)))
-    f, power = signal.welch(speed, fs=rate, nperseg=window, detrend="constant")
-    top = 0.35 * rate  # central differences see little above
-    f, power = f[f < top], power[f < top]
-    # White noise of the position, from the upper half; its estimate scatters: twice the level is noise yet.
-    white = (np.sin(2 * np.pi * f / rate) * rate) ** 2
-    upper = f > 0.5 * top
-    floor = 2.0 * float(np.median(power[upper] / white[upper]))
-    speeds = np.cumsum(np.maximum(power - floor * white, 0.0))
-    content = float(f[np.searchsorted(speeds, limits.bandwidth_power * speeds[-1])])
-    accelerations = power * (2 * np.pi * f) ** 2
-    edges = max(content, f[1]) * 2.0 ** np.arange(0.0, 20.0, 0.5)
-    bands = [(f >= low) & (f < high) for low, high in pairwise(edges)]
-    levels = [(float(np.mean(accelerations[b])), float(f[b][0])) for b in bands if b.any()]
-    level, valley = min(levels, default=(0.0, top))
-    noise = np.cumsum(np.where(f < valley, level, accelerations))
-    noisy = noise > limits.max_noise_share * np.sum(accelerations[f < valley])
-    return float(f[np.argmax(noisy)]) if noisy.any() else top, content
 
 
 def chosen_gates(record: Record, settings: Settings) -> tuple[float, ...]:

@@ -11,6 +11,7 @@ import numpy as np
 
 from modelgen.dataset.objects import Record
 from modelgen.dataset.processing.resampling import held_resampled, smooth_resampled
+from modelgen.dataset.processing.rounding import LONGEST, resolution
 from modelgen.dataset.processing.stamps import true_stamps
 from modelgen.dataset.processing.timing import Axis, Survey, survey
 from modelgen.dataset.reading import checks
@@ -140,6 +141,10 @@ def record_of(source: Source, arm: Arm, table: Array, axis: Axis, t: Array) -> t
             check_unsigned(file, column, np.round((table[:, k] - offset) / factor, 6))
     on_axis = _Columns(source, {name: table[:, k] for k, name in enumerate(source.wanted)}, axis, t)
     logged = on_axis.smooth(signals.position)
+    counts: tuple[float, ...] = ()
+    if axis.method != "none":  # which blurs them
+        read_off = [on_axis.columns[name][:LONGEST] for name in signals.position]
+        counts = tuple(resolution(x) or 0.0 for x in read_off)
     motor_side = tuple(name.startswith("qm") for name in signals.position)
     q, motor = logged.copy(order="K"), logged.copy(order="K")
     for k, drive in enumerate(drives):
@@ -199,6 +204,7 @@ def record_of(source: Source, arm: Arm, table: Array, axis: Axis, t: Array) -> t
         jitter=axis.jitter,
         effort_hold=source.hold,
         hold_known="mapping" if source.stated else "",
+        counts=counts,
     )
     beyond = check_efforts(record, signals.effort, arm, drives, limits)
     return (replace(record, remarks=(*remarks, *beyond)) if beyond else record), logged

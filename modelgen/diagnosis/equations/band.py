@@ -14,8 +14,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from modelgen.dataset import Chosen, Prepared, Settings, choose, prepare
+from modelgen.dataset.processing.content import motion_bandwidth
 from modelgen.dataset.processing.periods import rows_in, with_whole_rows
-from modelgen.dataset.processing.settings import motion_bandwidth
 from modelgen.diagnosis.equations.checks import check_excitation, check_motion, check_test
 from modelgen.diagnosis.equations.equations import Equations
 from modelgen.diagnosis.equations.free_motion import away_from_rest

@@ -1,0 +1,149 @@
+"""What the positions of a record hold of the motion, and what of noise: the cut-offs that this asks for.
+
+The noise of coarse positions is known: their rounding. It hides the motion from some frequency on, beyond
+which neither the motion's bandwidth nor any other noise is looked for.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from itertools import pairwise
+
+import numpy as np
+from scipy import signal
+
+from modelgen.dataset.objects import Record
+from modelgen.dataset.processing.rounding import position_steps, rounding_power
+from modelgen.dataset.thresholds import USUAL, DatasetThresholds
+from modelgen.errors import InputError
+from modelgen.numeric import Array
+
+TOP = 0.35  # of the rate: central differences see little above
+
+
+@dataclass(frozen=True)
+class Spectrum:
+    """Speeds of the coordinate `joint`, from 0. f: (F,) [Hz]. power, rounding: (F,) of the speed, and of what
+    its rounding feigns of it, zero where the positions have no steps. seen: (F,), where motion shows. white:
+    (F,) of the speeds that white noise of positions makes, of power 1.
+    """
+
+    joint: int
+    f: Array
+    power: Array
+    rounding: Array
+    seen: np.ndarray
+    white: Array
+
+    @property
+    def content(self) -> Array:
+        """Power of the speed without its noise, (F,)."""
+        # White noise of the position, from the upper half; its estimate scatters: twice the level is noise.
+        upper = self.f > 0.5 * self.f[-1]
+        floor = 2.0 * float(np.median(self.power[upper] / self.white[upper]))
+        return np.asarray(np.where(self.seen, np.maximum(self.power - floor * self.white, 0.0), 0.0))
+
+    def bandwidth(self, share: float) -> float:
+        """Frequency [Hz] below which a share of the speed's power lies."""
+        speeds = np.cumsum(self.content)
+        return float(self.f[np.searchsorted(speeds, share * speeds[-1])])
+
+    def quiet(self, begin: float, share: float, rounded: float) -> float:
+        """Highest cut-off [Hz] that leaves noise a share of the power of the accelerations.
+
+        What their spectrum holds beyond its valley, looked for from `begin` [Hz] on, and the valley's level
+        below it, counts as noise. rounded: share that rounding may feign.
+        """
+        f, accelerations = self.f, self.power * (2 * np.pi * self.f) ** 2
+        edges = max(begin, f[1]) * 2.0 ** np.arange(0.0, 20.0, 0.5)
+        bands = [(f >= low) & (f < high) for low, high in pairwise(edges)]
+        levels = [(float(np.mean(accelerations[b])), float(f[b][0])) for b in bands if b.any()]
+        level, valley = min(levels, default=(0.0, float(f[-1])))
+        noise = np.cumsum(np.where(f < valley, level, accelerations))
+        noisy = noise > share * np.sum(accelerations[f < valley])
+        noisy |= self.feigned > rounded
+        return float(f[np.argmax(noisy)]) if noisy.any() else float(f[-1] + f[1])
+
+    @property
+    def feigned(self) -> Array:
+        """Power of the accelerations that rounding feigns up to each frequency, in all that shows, (F,)."""
+        square = (2 * np.pi * self.f) ** 2
+        whole = float(np.sum((self.power * square)[self.seen]))
+        return np.asarray(np.cumsum(self.rounding * square) / max(whole, 1e-300))
+
+    def quiet_speeds(self, share: float) -> float:
+        """Frequency [Hz] up to which rounding feigns a share of the speed's power at most."""
+        noisy = np.cumsum(self.rounding) > share * np.sum(self.power[self.seen])
+        return float(self.f[np.argmax(noisy)]) if noisy.any() else np.inf
+
+
+def spectra(record: Record, limits: DatasetThresholds = USUAL) -> list[Spectrum]:
+    """Those of the joints that have more readings than one at rest; of all where none has."""
+    steps, rate = position_steps(record), 1.0 / record.step
+    moving = [k for k in range(record.n) if len(np.unique(record.q[:, k])) > limits.max_readings_at_rest]
+    return [_spectrum(k, record.q[:, k], steps[k], rate) for k in moving or range(record.n)]
+
+
+def _spectrum(joint: int, q: Array, step: float, rate: float) -> Spectrum:
+    speed = np.gradient(q, 1.0 / rate)[1:-1]  # the ends are one-sided
+    window = int(min(len(speed), max(64, 10.0 * rate)))
+    f, power = signal.welch(speed, fs=rate, nperseg=window, detrend="constant")
+    f, power = f[f < TOP * rate], power[f < TOP * rate]
+    rounding = rounding_power(step, rate, f)
+    white = (np.sin(2 * np.pi * f / rate) * rate) ** 2
+    positions = np.divide(power, white, out=np.zeros_like(power), where=white > 0.0)
+    return Spectrum(joint, f, power, rounding, f <= _seen(f, positions, step), white)
+
+
+def _seen(f: Array, positions: Array, step: float) -> float:
+    """Frequency [Hz] above which positions of such a spectrum (F,) have no more power than their rounding.
+
+    Rounding of a slow motion is not white; the power of all of it is known.
+    """
+    beyond = np.cumsum(positions[::-1])[::-1] * f[1]
+    hidden = beyond <= step**2 / 12.0
+    return float(f[max(1, int(np.argmax(hidden)))]) if hidden.any() else float(f[-1])
+
+
+def chosen_cutoff(record: Record, limits: DatasetThresholds = USUAL) -> float:
+    """Parallel cut-off [Hz]: as high as the noise of the positions allows.
+
+    Noise in a regressor biases least squares: it makes up a thousandth of the accelerations' power at most.
+    Bounded by the motion's own bandwidth, and by the record's rate and length.
+    """
+    found = spectra(record, limits)
+    widths = [s.bandwidth(limits.bandwidth_power) for s in found]
+    shares = limits.max_noise_share, limits.cutoff_rounding_share
+    quiet = min(s.quiet(w, *shares) for s, w in zip(found, widths, strict=True))
+    length = len(record.t) * record.step
+    least = max(limits.cutoff_over_bandwidth * max(widths), limits.min_cutoff_periods / length)
+    return float(min(max(quiet, least), 1.0 / record.step / limits.samples_per_cutoff_period))
+
+
+def motion_bandwidth(record: Record, limits: DatasetThresholds = USUAL) -> float:
+    """Frequency [Hz] below which nine tenths of the power of every joint's speed lie, noise apart."""
+    return max(s.bandwidth(limits.bandwidth_power) for s in spectra(record, limits))
+
+
+def quiet_speeds(record: Record, limits: DatasetThresholds = USUAL) -> float:
+    """Frequency [Hz] up to which rounding spoils no joint's speed; infinite where positions have no steps."""
+    return min(s.quiet_speeds(limits.max_speed_noise_share) for s in spectra(record, limits))
+
+
+def check_coarse(record: Record, cutoff: float, limits: DatasetThresholds = USUAL) -> None:
+    """Raises InputError where rounding feigns more of the accelerations below a cut-off [Hz] than may be.
+
+    A cut-off that the motion needs may let through more of it than is asked for.
+    """
+    feigned = [(float(s.feigned[np.searchsorted(s.f, cutoff) - 1]), s.joint) for s in spectra(record, limits)]
+    share, joint = max(feigned)
+    if share <= limits.max_rounding_share:
+        return
+    arm, most = record.arm, limits.max_rounding_share
+    name = f"q{joint + 1}" if arm is None else arm.joints[arm.coordinates[joint]].name
+    raise InputError(
+        f"{record.name}: the positions of {name} are too coarse: steps of "
+        f"{position_steps(record)[joint]:.3g} feign {100 * share:.2g} % of the power of its accelerations "
+        f"below {cutoff:.3g} Hz, expected {100 * most:g} % at most; what would help: the motor's encoder, "
+        "faster motions over more of the range, more samples per second; --cutoff takes the choice upon you"
+    )

@@ -1,0 +1,53 @@
+"""Rounding of the positions: its step, as the readings show it, and its noise, which follows from that."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from modelgen.dataset.drives import drives_of
+from modelgen.dataset.objects import Record
+from modelgen.numeric import Array
+
+LONGEST = 1 << 18  # samples that a step is read off
+_WHOLE = 0.01  # of a step, by which a multiple of it may miss a whole number
+
+
+def resolution(values: Array) -> float | None:
+    """The step that all differences of readings (N,) are multiples of, None where there is none."""
+    # Two decimal readings differ by rounding alone where they were one number.
+    smallest = 1e-12 * float(np.max(np.abs(values)))
+    steps = np.diff(np.unique(values))
+    steps = steps[steps > smallest]
+    if len(steps) < 2:
+        return None
+    step = float(steps.min())
+    multiples = steps / step
+    if np.max(np.abs(multiples - np.round(multiples))) > _WHOLE:
+        return None
+    # The mean over all steps has more digits than the smallest.
+    return float(steps.sum() / np.round(multiples).sum())
+
+
+def position_steps(record: Record) -> Array:
+    """Steps of the joint coordinates (n,) [rad, m] that those of the logged positions are, 0 where none show.
+
+    Behind a lever the step is the mean over the record.
+    """
+    sides = record.motor_side or (False,) * record.n
+    logged = [record.motor[:, k] if side else record.q[:, k] for k, side in enumerate(sides)]
+    steps = record.counts or tuple(resolution(x[:LONGEST]) or 0.0 for x in logged)
+    drives = () if record.arm is None else drives_of(record.arm)
+    found = np.array(steps)
+    for k, side in enumerate(sides):
+        if side and drives and found[k]:
+            found[k] /= float(np.mean(np.abs(drives[k].k1(record.q[:LONGEST, k]))))
+    return found
+
+
+def rounding_power(step: float, rate: float, f: Array) -> Array:
+    """Power per Hz of the speed that rounding to a step feigns, at frequencies f [Hz].
+
+    Rounding errors are uniform over a step and taken as white (Bennett 1948); central differences of one
+    sample make speeds of them.
+    """
+    return np.asarray(step**2 / (6.0 * rate) * (np.sin(2 * np.pi * f / rate) * rate) ** 2)
