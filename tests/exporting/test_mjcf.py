@@ -28,6 +28,30 @@ def test_a_shipped_arm_accelerates_as_its_equations_say(name: str) -> None:
     close(mujoco_accelerations(model.text, motion), motion.accelerations)
 
 
+@pytest.mark.parametrize("name", ["gravity_arm", "ariane4", "screw_axis"])
+def test_dry_friction_of_joints_that_slide_is_that_of_the_equations(name: str) -> None:
+    arm = SHIPPED[name]
+    model = mg.export(arm, to="mjcf")
+    assert {row.status for row in model.rows} == {"exact", "approximated"}
+    motion = Motion(arm)
+    simulator = mujoco.MjModel.from_xml_string(model.text)
+    data, found = mujoco.MjData(simulator), np.zeros_like(motion.efforts)
+    full = np.zeros((simulator.nv, simulator.nv))
+    for k, (q, dq, ddq) in enumerate(zip(motion.q, motion.dq, motion.ddq, strict=True)):
+        data.qpos[:], data.qvel[:] = q, dq
+        mujoco.mj_fwdPosition(simulator, data)
+        mujoco.mj_fwdVelocity(simulator, data)
+        mujoco.mj_fullM(simulator, data, full)
+        dry = simulator.dof_frictionloss * np.sign(dq)
+        pull = simulator.tendon_frictionloss * np.sign(data.ten_velocity)
+        along = np.zeros((simulator.ntendon, simulator.nv))
+        if len(along):
+            rows = simulator.ten_J_rownnz, simulator.ten_J_rowadr, simulator.ten_J_colind
+            mujoco.mju_sparse2dense(along, data.ten_J, *rows)
+        found[k] = full @ ddq + data.qfrc_bias - data.qfrc_passive + dry + along.T @ pull
+    close(found, motion.efforts)
+
+
 MANY = """
 schema: 1
 convention: khalil_kleinfinger
