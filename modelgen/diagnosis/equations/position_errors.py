@@ -2,7 +2,7 @@
 
 Regressors are made of measured positions; where a coarse encoder blurs them, least squares correlates
 columns with their own errors (Fuller 1987, "Measurement Error Models", 1.1). What the error of the
-regressor leaves in the residuals is measured by blurring the positions once more in the same way and
+regressor leaves in the residuals is measured by rounding the motion once more in the same way and
 looking at what that changes (Cook and Stefanski 1994). No column can gain more by following that error
 than the error's whole share of the residuals: a gain up to that share is no evidence.
 """
@@ -14,7 +14,7 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from modelgen.dataset import Record, drives_of, prepare
+from modelgen.dataset import Prepared, Record, drives_of, prepare
 from modelgen.diagnosis.equations.equations import Equations
 from modelgen.diagnosis.equations.rows import Rows
 from modelgen.diagnosis.options.thresholds import EquationThresholds
@@ -54,26 +54,37 @@ def rounded(record: Record, limits: EquationThresholds) -> bool:
 
     By their third differences, in which a motion that is sampled well all but vanishes.
     """
-    most = limits.max_rounding_error**2 * THIRD
-    return all(
-        count > 0 and float(np.mean(np.diff(_logged(record, j), 3) ** 2)) <= most * count**2
-        for j, count in enumerate(counts(record, limits))
-    )
+    return all(_rounded(_logged(record, j), c, limits) for j, c in enumerate(counts(record, limits)))
 
 
-def blurred(record: Record, limits: EquationThresholds, which: NDArray[np.bool_] | None = None) -> Record:
-    """The record with one more error of a uniform distribution over a count on every position.
+def _rounded(values: Array, count: float, limits: EquationThresholds) -> bool:
+    most = limits.max_rounding_error**2 * THIRD * count**2
+    return count > 0 and float(np.mean(np.diff(values, 3) ** 2)) <= most
 
-    which: of these coordinates (n,) alone.
+
+def blurred(prepared: Prepared, limits: EquationThresholds, which: NDArray[np.bool_] | None = None) -> Record:
+    """The record with one more error of its counts on every position.
+
+    Where rounding is all the error that it has, the error of another rounding of the same motion: with the
+    counts shifted by a part of one. A motion that takes many samples for a count keeps its error as long,
+    and low frequencies hold more of it than of errors that are drawn sample by sample, as they are where
+    other noise moves the readings. which: of these coordinates (n,) alone.
     """
+    record = prepared.record
     random = np.random.default_rng(SEED)
     q, motor = record.q.copy(), record.motor.copy()
     drives = drives_of(record.arm) if record.arm is not None else ()
     for j, count in enumerate(counts(record, limits)):
         if not count or (which is not None and not which[j]):
             continue
-        error = random.uniform(-0.5, 0.5, len(q)) * count
-        if record.motor_side and record.motor_side[j]:
+        side = bool(record.motor_side) and record.motor_side[j]
+        motion = (prepared.motor if side else prepared.q)[:, j]
+        if _rounded(_logged(record, j), count, limits):
+            shifted = motion / count + random.uniform()
+            error = (np.round(shifted) - shifted) * count
+        else:
+            error = random.uniform(-0.5, 0.5, len(q)) * count
+        if side:
             motor[:, j] += error
         else:
             q[:, j] += error
@@ -106,7 +117,7 @@ def _left_by_errors(
     p, limits = r.prepared, equations.thresholds.equations
     if not counts(p.record, limits).any():
         return np.zeros(r.effort.shape)
-    blurry = replace(prepare(blurred(p.record, limits, which), p.settings), awake=p.awake)
+    blurry = replace(prepare(blurred(p, limits, which), p.settings), awake=p.awake)
     again = equations.of_record(blurry, theta)
     return np.asarray((again.effort - r.effort) - (again.columns - r.columns) @ theta)
 
