@@ -75,6 +75,13 @@ class Definition(Traits):
         return {theirs: values[own] for theirs, own in cls.sources.items() if own in values}
 
     @classmethod
+    def recognised(cls, properties: Numbers) -> Mapping[str, float]:
+        """Values with which `simulated` gives just these properties; empty where none do."""
+        if not cls.laws or set(properties) != set(cls.laws):
+            return {}
+        return {cls.laws[theirs]: value for theirs, value in properties.items()}
+
+    @classmethod
     def held(cls, p: Mapping[str, sp.Expr | float]) -> tuple[str, ...]:
         """Names of the `states` that it has with these values of its parameters; all for most."""
         return cls.states

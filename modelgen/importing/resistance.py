@@ -1,6 +1,7 @@
 """What a joint resists with and stores, as effects of the catalogue, and its gear as a drive.
 
-The effects say themselves what robot files call their parameters (`Traits.sources`).
+The effects say themselves what robot files call their parameters (`Traits.sources`), and which laws are
+theirs (`Definition.recognised`).
 """
 
 from __future__ import annotations
@@ -11,12 +12,21 @@ from modelgen.effects import CATALOGUE
 from modelgen.importing.robot import SourceJoint
 from modelgen.transmission import DirectDrive, LeveredDrive
 
+# Power of the gear by which a coefficient of damping is greater at the joint than at the motor.
+POWERS: Mapping[str, int] = {"quadratic": 3, "cubic": 4}
+
 Entry = str | float | tuple[float, float]
 
 
 def effects_of(joint: SourceJoint) -> dict[str, dict[str, float]]:
     """Values of the parameters of the joint's effects, by effect, in the units of the drive's coordinate."""
     found: dict[str, dict[str, float]] = {}
+    terms = {law: joint.properties[law] for law in POWERS if law in joint.properties}
+    for own in [*({law: v / abs(joint.reduction) ** POWERS[law]} for law, v in terms.items()), *joint.alone]:
+        for name, effect in CATALOGUE.items():
+            values = effect.recognised(own)
+            if values:
+                found.setdefault(name, dict(values))
     for name, effect in CATALOGUE.items():
         units = {parameter.name: parameter.unit for parameter in effect.accepted()}
         for source, parameter in effect.sources.items():

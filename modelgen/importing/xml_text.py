@@ -17,6 +17,7 @@ from modelgen.errors import InputError, Location
 from modelgen.importing.rounded import Rounding
 from modelgen.numeric import Array
 
+DAMPING = ("damping", "quadratic", "cubic")  # laws of the coefficients of a polynomial of the speed
 MAX_BYTES = 20_000_000
 MAX_DEPTH = 200
 
@@ -71,6 +72,15 @@ class Element:
     def numbers(self, name: str) -> list[float]:
         """An attribute as numbers, however many."""
         return self._numbers(name, len(self.text(name).split()))
+
+    def damping(self) -> dict[str, float]:
+        """Coefficients of the polynomial of the speed in `damping`, those that are not zero."""
+        given = self.numbers("damping") if "damping" in self.attributes else []
+        if len(given) > len(DAMPING):
+            raise self.error(
+                f"<{self.tag} damping>: found {len(given)} values, expected {len(DAMPING)} at most"
+            )
+        return {law: value for law, value in zip(DAMPING, given, strict=False) if value}
 
     def angles(self, name: str, size: int, rounding: Rounding) -> Array:
         """As `vector`, angles [rad], rounded ones as `rounding` takes them."""

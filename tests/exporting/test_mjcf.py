@@ -141,6 +141,22 @@ def test_every_kind_of_joint_and_effect_that_mujoco_knows_is_exact(many: mg.Arm)
     close(mujoco_accelerations(model.text, motion), motion.accelerations)
 
 
+def test_what_was_exported_is_imported_with_its_effects(many: mg.Arm, tmp_path: Path) -> None:
+    # but for what couples two joints, which the import refuses
+    joints = tuple(
+        replace(j, effects=tuple(use for use in j.effects if use.name != "transmission_coupling"))
+        for j in many.joints
+    )
+    arm = replace(many, joints=joints)
+    mg.export(arm, to="mjcf", out=tmp_path / "arm.xml")
+    robot = mg.import_robot(tmp_path / "arm.xml", exact=True)
+    assert robot.remarks == ()
+    again = mg.export(robot.arm, to="mjcf")
+    assert {row.status for row in again.rows} == {"exact"}
+    motion = Motion(arm)
+    close(mujoco_accelerations(again.text, motion), motion.accelerations)
+
+
 def test_frames_and_tools_stand_where_the_arm_has_them(many: mg.Arm) -> None:
     model = mujoco.MjModel.from_xml_string(mg.export(many, to="mjcf").text)
     data = mujoco.MjData(model)

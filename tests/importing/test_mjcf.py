@@ -69,3 +69,35 @@ def test_a_held_ball_lets_the_rest_in(tmp_path: Path) -> None:
     inner = bodies(f'<joint name="hip" type="ball"/>{MASS}', f'<joint name="knee"/>{MASS}')
     robot = mg.import_robot(saved(tmp_path, f"<mujoco>{inner}</mujoco>"), root="b0")
     assert list(robot.joints) == ["knee"]
+
+
+DRIVE = (
+    '<general joint="a" gear="20" dyntype="filterexact" dynprm="0.04" gainprm="0.1" biastype="affine" {}/>'
+)
+PASSIVE = '<dcmotor name="p" joint="a" gear="5" resistance="1" motorconst="{}" input="none" {}/>'
+
+
+@pytest.mark.parametrize(
+    ("bias", "constant", "passive", "effects", "remark"),
+    [
+        ("0.3 0 0", "0 0", 'cogging="0.2 8 1"', "time_delay friction_offset torque_ripple", ""),
+        ("0.3 -4 0", "0 0", 'lugre="8 0 0.2 0.2 1"', "time_delay presliding", ""),
+        ("0 0 0", "0 0", 'lugre="8 0 0.2 0.3 1"', "time_delay", "actuator p of joint a has no input"),
+        ("0 0 0", "0.1 0", 'cogging="0.2 8 1"', "time_delay", "actuator p of joint a has no input"),
+    ],
+)
+def test_what_actuators_do_by_themselves_becomes_effects(
+    bias: str, constant: str, passive: str, effects: str, remark: str, tmp_path: Path
+) -> None:
+    actuators = DRIVE.format(f'biasprm="{bias}"') + PASSIVE.format(constant, passive)
+    text = bodies(f'<joint name="a" axis="0 1 0"/>{MASS}') + f"<actuator>{actuators}</actuator>"
+    robot = mg.import_robot(saved(tmp_path, f"<mujoco>{text}</mujoco>"))
+    (joint,) = robot.arm.joints
+    assert {use.name for use in joint.effects} == set(effects.split())
+    assert [remark in text for text in robot.remarks] == ([True] if remark else [])
+
+
+def test_damping_of_more_terms_than_there_are_is_refused(tmp_path: Path) -> None:
+    text = bodies(f'<joint name="a" damping="1 2 3 4"/>{MASS}')
+    with pytest.raises(mg.InputError, match="found 4 values, expected 3 at most"):
+        mg.import_robot(saved(tmp_path, f"<mujoco>{text}</mujoco>"))

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from types import MappingProxyType
 
 import sympy as sp
 
@@ -222,6 +223,7 @@ class Presliding(Friction):
     confused_with = ("stribeck_friction", "backlash", "time_delay")
     experiment = "reversals of small amplitude, at several amplitudes and speeds"
     shown = at(magnitude=0.1, distance=6.0)
+    laws = MappingProxyType({"friction": "magnitude", "bristle": "distance"})
 
     @classmethod
     def simulated(cls, values: Numbers) -> Mapping[str, float]:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import replace
+from types import MappingProxyType
 
 import sympy as sp
 
@@ -204,6 +205,7 @@ class TimeDelay(InputEffect):
     confused_with = ("joint_flexibility", "presliding", "stribeck_friction")
     experiment = "the cross-correlation of a chirp, or a loop-back of the signal"
     shown = at(delay=0.02)
+    laws = MappingProxyType({"lag": "delay"})
 
     @classmethod
     def delays(cls, values: Numbers) -> float | None:

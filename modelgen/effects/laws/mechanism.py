@@ -112,6 +112,7 @@ class TorqueRipple(Effect):
     confused_with = ("position_dependent_friction", "lever_geometry")
     experiment = "slow constant speed, and the spectrum over the motor's angle"
     shown = at(sine=0.05, cosine=0.0, harmonic=0.25)
+    laws = MappingProxyType({"sine": "sine", "cosine": "cosine", "wave": "harmonic"})
 
     @classmethod
     def variants(cls, arm: Arm, number: int | None) -> list[dict[str, float]]:

@@ -105,6 +105,7 @@ class FrictionOffset(Effect):
     )
     experiment = "the current with the motor switched off, and constant speeds in both directions"
     shown = at(offset=0.05)
+    laws = MappingProxyType({"force": "offset"})
     linear = (Parameter("offset", "{f}", "constant force", "FO", bounds=ANY),)
 
     @classmethod
@@ -181,6 +182,14 @@ class NonlinearViscousFriction(Friction):
         exponent = values["exponent"]
         word = {1.0: "damping", 2.0: "quadratic", 3.0: "cubic"}.get(exponent)
         return {} if word is None else {word: values["coefficient"] / values["scale"] ** exponent}
+
+    @classmethod
+    def recognised(cls, properties: Numbers) -> Mapping[str, float]:
+        """The second or third term of a polynomial."""
+        for word, exponent in (("quadratic", 2.0), ("cubic", 3.0)):
+            if set(properties) == {word}:
+                return {"coefficient": properties[word], "exponent": exponent, "scale": 1.0}
+        return {}
 
     def law(self, x: Variables, p: Values) -> sp.Expr:
         """FN |v / scale|^exponent sign(v)."""

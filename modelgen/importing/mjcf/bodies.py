@@ -160,8 +160,8 @@ class Bodies:
         return (float(ends[0]), float(ends[1])) if ends[0] < ends[1] else None
 
     def _properties(self, joint: Element, kind: str, name: str) -> dict[str, float]:
-        named = {"damping": "damping", "friction": "frictionloss", "armature": "armature"}
-        found = {own: joint.number(theirs, 0.0) for own, theirs in named.items()}
+        named = {"friction": "frictionloss", "armature": "armature"}
+        found = joint.damping() | {own: joint.number(theirs, 0.0) for own, theirs in named.items()}
         stiffness = joint.number("stiffness", 0.0)
         if stiffness:
             found |= {"stiffness": stiffness, "rest": self._coordinate(joint, kind, "springref")}

@@ -8,7 +8,9 @@ from dataclasses import replace
 import numpy as np
 
 from modelgen.importing.mjcf.levers import Levers
+from modelgen.importing.mjcf.passive import passive_laws
 from modelgen.importing.mjcf.settings import ACTUATORS, Defaults
+from modelgen.importing.resistance import POWERS
 from modelgen.importing.robot import Closure, SourceJoint
 from modelgen.importing.xml_text import Element
 
@@ -70,6 +72,7 @@ def with_actuators(root: Element, defaults: Defaults, levers: Levers) -> tuple[l
     turned = {tendon: joint for joint, tendon in levers.tendons.items()}
     remarks: list[str] = []
     seen: dict[str, str] = {}
+    passive: list[tuple[str, str, Element, float]] = []
     for section in root.all("actuator"):
         for element in section.children:
             actuator = defaults.complete(element, None)
@@ -83,13 +86,21 @@ def with_actuators(root: Element, defaults: Defaults, levers: Levers) -> tuple[l
                 raise actuator.error(f"actuator {name}: there is no joint '{target}'")
             gear = _gear(actuator)
             if given.get("input") == "none":
-                remarks.append(f"actuator {name} of joint {target} has no input and is left out")
+                passive.append((name, target, actuator, gear))
                 continue
             if target in seen:
                 remarks.append(f"joint {target}: {seen[target]} is its drive, actuator {name} is left out")
                 continue
             seen[target] = f"actuator {name}"
             by_name[target] = _driven(by_name[target], actuator, gear)
+    for name, target, actuator, gear in passive:
+        joint = by_name[target]
+        found = passive_laws(actuator, gear / joint.reduction)
+        known = {tuple(own) for own in joint.alone}
+        if not found or any(tuple(own) in known for own in found):
+            remarks.append(f"actuator {name} of joint {target} has no input and is left out")
+            continue
+        by_name[target] = replace(joint, alone=(*joint.alone, *found))
     return [by_name[joint.name] for joint in levers.joints], remarks
 
 
@@ -103,16 +114,33 @@ def _gear(actuator: Element) -> float:
 
 def _driven(joint: SourceJoint, actuator: Element, gear: float) -> SourceJoint:
     properties = dict(joint.properties)
-    for own in ("armature", "damping"):
-        value = actuator.number(own, 0.0)
+    for own, value in (actuator.damping() | {"armature": actuator.number("armature", 0.0)}).items():
         if value:
-            properties[own] = properties.get(own, 0.0) + value * gear**2
+            properties[own] = properties.get(own, 0.0) + value * abs(gear) ** POWERS.get(own, 2)
     effort = joint.effort
     limited = actuator.attributes.get("forcelimited", "auto") != "false"
     if effort is None and limited and "forcerange" in actuator.attributes:
         effort = float(np.abs(actuator.vector("forcerange", 2)).max() * abs(gear)) or None
+    alone = [own for own in (_push(actuator), _lag(actuator)) if own]
     gain = actuator.numbers("gainprm")[0] if actuator.tag == "general" and _fixed(actuator) else 1.0
-    return replace(joint, properties=properties, reduction=gear, effort=effort, gain=gain or 1.0)
+    return replace(
+        joint, properties=properties, reduction=gear, effort=effort, gain=gain or 1.0, alone=tuple(alone)
+    )
+
+
+def _push(actuator: Element) -> dict[str, float]:
+    """A constant force against the input."""
+    if actuator.tag != "general" or actuator.attributes.get("biastype") != "affine":
+        return {}
+    first, *others = actuator.numbers("biasprm")
+    return {"force": -first} if first and not any(others) else {}
+
+
+def _lag(actuator: Element) -> dict[str, float]:
+    """A filter of the first order."""
+    if actuator.tag != "general" or actuator.attributes.get("dyntype") not in ("filter", "filterexact"):
+        return {}
+    return {"lag": actuator.numbers("dynprm")[0]}
 
 
 def _fixed(actuator: Element) -> bool:

@@ -74,8 +74,8 @@ def _lever(tendon: Element, ends: Sequence[str], joints: Sequence[SourceJoint]) 
     lever = _triangle(joint, base, tip)
     if lever is None or set(tendon.attributes) & {"range", "springlength"}:
         return None
-    named = {"damping": "damping", "friction": "frictionloss", "armature": "armature"}
-    properties = {own: tendon.number(theirs, 0.0) for own, theirs in named.items()}
+    named = {"friction": "frictionloss", "armature": "armature"}
+    properties = {own: tendon.number(theirs, 0.0) for own, theirs in named.items()} | tendon.damping()
     if tendon.number("stiffness", 0.0) or any(name in joint.properties for name in properties):
         return None
     kept = {name: value for name, value in properties.items() if value}

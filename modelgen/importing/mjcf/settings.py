@@ -23,6 +23,7 @@ ACTUATORS = (
     "muscle",
     "adhesion",
     "dcmotor",
+    "pid",
 )
 MAIN = "main"  # the class that holds for all
 
