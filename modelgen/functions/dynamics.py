@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from modelgen.geometry import Frames
 from modelgen.graph import Expr
 from modelgen.graph.live import cost
+from modelgen.model.articulated import accelerations
 from modelgen.model.composite import mass_matrix as links_mass_matrix
 from modelgen.model.composite import solve
 from modelgen.model.dynamics import joint_efforts
@@ -16,6 +17,8 @@ from modelgen.model.energy import link_energies
 from modelgen.model.equations import Equations
 from modelgen.model.motion import Rates, link_motions
 from modelgen.model.ports import Surroundings
+
+_ARTICULATED_FROM = 8  # joints; of fewer, articulated bodies take more operations in every shape
 
 
 @dataclass(frozen=True)
@@ -69,26 +72,34 @@ class Dynamics:
         return [[a + b for a, b in zip(*rows, strict=True)] for rows in zip(links, effects, strict=True)]
 
     def forward_dynamics(self, dq: Sequence[Expr], given: Sequence[Expr]) -> tuple[list[Expr], list[Expr]]:
-        """Joint accelerations for the inputs `given`, and what must be positive: see `solve`."""
+        """Joint accelerations for the inputs `given`, and what must be positive: see `solve`.
+
+        By the mass matrix or by articulated bodies, whichever is cheaper.
+        """
         e = self.equations
         rates = Rates(dq, e.zeros())
         effects = EffectForces(e, rates, self.values)
         added = effects.efforts()
         ideal = effects.effective(given)
         matrix = self.mass_matrix(dq)
-        positive: list[list[Expr]] = []
-
-        def form(frames: Frames) -> list[Expr]:
-            efforts = joint_efforts(frames, link_motions(frames, rates), e.link_values(self.values))
+        links = e.link_values(self.values)
+        found: list[tuple[list[Expr], list[Expr]]] = []
+        for frames in (e.frames, e.frames_factored):
+            efforts = joint_efforts(frames, link_motions(frames, rates), links)
             right = [
                 i * gain - (effort + extra)
                 for i, gain, effort, extra in zip(ideal, self.gains(), efforts, added, strict=True)
             ]
-            accelerations, found = solve(matrix, right)
-            positive.append(found)
-            return accelerations
-
-        return self.cheapest(form), positive[0]
+            found.append(solve(matrix, right))
+        masses = effects.masses()
+        apart = all(m.is_zero for k, row in enumerate(masses) for m in (*row[:k], *row[k + 1 :]))
+        if e.n >= _ARTICULATED_FROM and apart:
+            at_joints = [i * gain - extra for i, gain, extra in zip(ideal, self.gains(), added, strict=True)]
+            drives = [row[k] for k, row in enumerate(masses)]
+            for frames in (e.frames, e.frames_factored):
+                motions = link_motions(frames, rates)
+                found.append(accelerations(frames, motions, links, at_joints, drives))
+        return min(found, key=lambda pair: cost(e.graph, [*pair[0], *pair[1]]))
 
     def loads(self) -> list[Expr]:
         """Forces at the motor coordinates that the links' weight takes."""
