@@ -91,6 +91,7 @@ size: $(TESTED)
 run-examples: $(TESTED)
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check --editable '.[examples]'
 	$(BIN)/python examples/firmware/run.py
+	$(BIN)/python examples/watch/run.py
 	$(BIN)/python examples/mpc/mpc_run.py
 	$(BIN)/python examples/ariane_experiment/twin_run.py
 	$(BIN)/python examples/ariane_experiment/twin_coverage.py

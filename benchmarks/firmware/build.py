@@ -18,7 +18,7 @@ from firmware.targets import BOARD, COMMON_FLAGS, WARNINGS, Target
 _ALLOCATED = 0x2  # SHF_ALLOC
 # Parts of musl's library, which ziglang brings as source, that generated code may call.
 _LIBRARY = {
-    "float": ("acosf", "sqrtf", "sqrt_data", "__math_invalidf"),
+    "float": ("acosf", "sqrtf", "sqrt_data", "__math_invalidf", "tanhf", "expm1f"),
     "double": (
         "acos",
         "sin",

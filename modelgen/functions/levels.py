@@ -19,17 +19,19 @@ from modelgen.graph.evaluate import evaluate
 from modelgen.options.noise import Noise
 
 BETWEEN_FALSE_ALARMS = 24 * 3600.0  # s
+# Bandwidth of the observer over that of the records: of what lies beyond, which is unknown, little passes.
+BANDWIDTH = 1 / 3
 MEMORY = 300.0  # s of motion that the monitor's estimates rest on
 
 
 def levels(a: Assembly, noise: Noise, values: Sequence[float]) -> Levels:
     """Levels for the identified `values` of the base parameters and their noise.
 
-    The observer passes the errors of the inputs through a low pass with the bandwidth of the records in which
-    they were found. Errors with rare large values count as if their deviation were larger (`Noise.largest`).
+    The observer passes the errors of the inputs through a low pass within the bandwidth of the records in
+    which they were found. Errors with rare large values count as if their deviation were larger.
     """
     n = a.n
-    gain = min(2 * pi * noise.cutoff if noise.cutoff else LARGEST_GAIN, LARGEST_GAIN)
+    gain = min(2 * pi * BANDWIDTH * noise.cutoff or LARGEST_GAIN, LARGEST_GAIN)
     of_record = passage_level(gain, noise.duration)
     high = passage_level(gain, BETWEEN_FALSE_ALARMS * n)
     spread = [max(s, most / of_record) for s, most in zip(noise.input, noise.largest, strict=True)]

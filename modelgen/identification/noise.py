@@ -17,7 +17,10 @@ UNCORRELATED = 0.05  # of the variance: where the sum of an autocorrelation ends
 def noise_of(
     records: Sequence[Prepared], residuals: Sequence[Array], moving: Sequence[NDArray[np.bool_]]
 ) -> Noise:
-    """By record: residuals (M, n) in the unit of the inputs, and which rows (M, n) count."""
+    """By record: residuals (M, n) in the unit of the inputs, and rows (M, n) at which the joints move.
+
+    The largest errors are those of all rows: where a joint turns back or rests, dry friction is undetermined.
+    """
     n = residuals[0].shape[1]
     step = float(np.median(np.diff(records[0].t)))
     rms, largest, correlation = [], [], []
@@ -27,7 +30,7 @@ def noise_of(
         count = max(1, sum(int(m.sum()) for m in flags))
         power = sum(float(e @ e) for e in parts) / count
         rms.append(float(np.sqrt(power)))
-        largest.append(max(float(np.abs(e).max()) for e in parts))
+        largest.append(max(float(np.abs(e[:, j]).max()) for e in residuals))
         correlation.append(step * _correlated(parts, power * count))
     settings = records[0].settings
     return Noise(

@@ -10,10 +10,10 @@ from dataclasses import dataclass, field
 class Noise:
     """By coordinate; `largest` and `input` in the unit of the inputs, of records that were not fitted.
 
-    input: root mean square of the inputs' errors. largest: their largest magnitude. correlation: time over
-    which the errors stay alike [s]. rest_speed: below which a joint counts as resting [rad/s, m/s]. cutoff:
-    of the filters of the records [Hz]. duration: of the records [s]. parameters: standard deviations of the
-    base parameters by name.
+    input: root mean square of the inputs' errors. largest: their largest magnitude, joints at rest included.
+    correlation: time over which the errors stay alike [s]. rest_speed: below which a joint counts as resting
+    [rad/s, m/s]. cutoff: of the filters of the records [Hz]. duration: of the records [s]. parameters:
+    standard deviations of the base parameters by name.
     """
 
     input: tuple[float, ...]
