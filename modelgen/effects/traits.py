@@ -92,7 +92,8 @@ class Traits(ABC):
     the model: where no parameter is linear they are estimated, by slopes about zero.
 
     sources: what robot files call its parameters, at the joint: its own name of each by theirs.
-    laws: what simulators call those of a law that stands by itself, at the motor: likewise.
+    laws: what simulators call those of a law that stands by itself, at the motor: likewise; "other" and
+        "ratio" where it acts on q + ratio q_other.
     parts: names of parameters that are also estimated alone, since others often are as they were.
     exact: what it does follows from the arm's own equations or is a constant; its form leaves others nothing.
     needs_effort: it is about what the drives are given, or what working does to them; of no meaning in a free

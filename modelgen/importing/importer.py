@@ -17,7 +17,7 @@ from modelgen.importing.formats import read_robot
 from modelgen.importing.frames import Parameters, Placed, place_frames
 from modelgen.importing.names import arm_name, joint_names
 from modelgen.importing.poses import inverse
-from modelgen.importing.resistance import drive_of, effects_of
+from modelgen.importing.resistance import drive_of, effects_of, shared_by
 from modelgen.importing.robot import Body, Robot
 from modelgen.importing.rounded import ANGLE_NEAR, LENGTH_NEAR, NOISE, Rounding
 from modelgen.importing.selection import Mechanism, MovingJoint, select
@@ -154,10 +154,18 @@ class _Writing:
             velocity=joint.velocity,
             effort=joint.effort,
             drive=drive_of(joint),
-            effects=effects_of(joint),
+            effects=effects_of(joint) | self._shared(joint.name),
             body=self._body(moving, self.placed.frames[i]),
             body_note=", ".join(link.name for link in moving.links if self.robot.links[link.name].body),
         )
+
+    def _shared(self, name: str) -> dict[str, dict[str, float]]:
+        """Effects of what turns with this joint and another."""
+        numbers = [self.mechanism.joints[a.joint].joint.name for a in self.placed.axes if a.joint is not None]
+        for pair in self.mechanism.pairs:
+            if pair.joint == name:
+                return shared_by(pair, numbers.index(pair.other) + 1)
+        return {}
 
     def _body(self, moving: MovingJoint, frame: Array) -> Body | None:
         if not self.robot.inertials:

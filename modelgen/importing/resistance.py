@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 from modelgen.effects import CATALOGUE
-from modelgen.importing.robot import SourceJoint
+from modelgen.importing.robot import SourceJoint, SourcePair
 from modelgen.transmission import DirectDrive, LeveredDrive
 
 # Power of the gear by which a coefficient of damping is greater at the joint than at the motor.
@@ -36,6 +36,13 @@ def effects_of(joint: SourceJoint) -> dict[str, dict[str, float]]:
                     value /= _scale(units[parameter], joint.reduction)
                 found.setdefault(name, {})[parameter] = value
     return found
+
+
+def shared_by(pair: SourcePair, other: int) -> dict[str, dict[str, float]]:
+    """The same of what turns with two joints. other: the second one's number from 1."""
+    terms = {law: pair.properties.get(law, 0.0) for law in ("armature", "damping", "friction")}
+    own = {**terms, "other": float(other), "ratio": pair.ratio}
+    return {name: dict(values) for name, e in CATALOGUE.items() if (values := e.recognised(own))}
 
 
 def _scale(unit: str, reduction: float) -> float:

@@ -92,13 +92,27 @@ class SourceJoint:
 
 
 @dataclass(frozen=True)
+class SourcePair:
+    """What resists and stores along q + ratio q_other; properties as those of a joint."""
+
+    joint: str
+    other: str
+    ratio: float
+    properties: Mapping[str, float]
+
+
+@dataclass(frozen=True)
 class Closure:
-    """What ties joints or links together besides the tree: an equality, a tendon; refused by `text`."""
+    """What ties joints or links together besides the tree: an equality, a tendon; refused by `text`.
+
+    pair: what it comes to where both of its joints move; then it is not refused.
+    """
 
     text: str
     joints: tuple[str, ...] = ()
     links: tuple[str, ...] = ()
     line: int = 0
+    pair: SourcePair | None = None
 
 
 @dataclass(frozen=True)

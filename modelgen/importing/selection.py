@@ -11,7 +11,7 @@ import numpy as np
 from modelgen.errors import InputError
 from modelgen.importing.bodies import doubt, moved_body
 from modelgen.importing.poses import moved
-from modelgen.importing.robot import MOVING, Body, Robot, SourceJoint
+from modelgen.importing.robot import MOVING, Body, Robot, SourceJoint, SourcePair
 from modelgen.numeric import Array
 
 
@@ -50,6 +50,7 @@ class Mechanism:
     base_links: tuple[Carried, ...]
     gravity: Array
     remarks: tuple[str, ...]
+    pairs: tuple[SourcePair, ...] = ()
 
 
 def select(robot: Robot, root: str | None, tip: str | None, lock: Mapping[str, float]) -> Mechanism:
@@ -66,6 +67,7 @@ class _Selection:
     def __init__(self, robot: Robot, root: str, tip: str | None, lock: Mapping[str, float]) -> None:
         self.robot = robot
         self.remarks: list[str] = []
+        self.pairs: list[SourcePair] = []
         self.by_name = {joint.name: joint for joint in robot.joints}
         self.above = {joint.child: joint for joint in robot.joints}
         self.below: dict[str, list[SourceJoint]] = {}
@@ -123,6 +125,7 @@ class _Selection:
             base_links=tuple(links[None]),
             gravity=self._upright().T @ self.robot.gravity,
             remarks=tuple(self.remarks),
+            pairs=tuple(self.pairs),
         )
 
     def _reached(self) -> list[SourceJoint]:
@@ -200,6 +203,10 @@ class _Selection:
                 )
         for closure in self.robot.closures:
             involved = [name for name in closure.joints if name in names]
+            pair = closure.pair
+            if pair is not None and len(involved) == 2 and all(p.joint != pair.joint for p in self.pairs):
+                self.pairs.append(pair)
+                continue
             if involved or self._moving_links(closure.links, names):
                 raise InputError(closure.text)
         return names

@@ -41,6 +41,12 @@ REFUSED = {
         bodies(f'<joint name="a" range="30 -30"/>{MASS}'),
         r"<joint range>: found '30 -30', expected the lower end first",
     ),
+    "a tendon with a spring along two joints": (
+        bodies(f'<joint name="a"/>{MASS}', f'<joint name="b"/>{MASS}')
+        + '<tendon><fixed name="belt" stiffness="9"><joint joint="a" coef="1"/><joint joint="b" coef="1"/>'
+        "</fixed></tendon>",
+        r"tendon belt acts on several joints",
+    ),
     "a tendon out of the plane of a lever": (
         bodies('<joint name="a"/><site name="pin" pos="0.1 0 0.2"/>' + MASS).replace(
             "<worldbody>", '<worldbody><site name="foot" pos="1 0 0"/>'

@@ -54,6 +54,13 @@ MODELS = {
     f'{FULL}<site name="pin" pos="0.22 0.1 0"/></body></body></worldbody>'
     '<tendon><spatial name="rod" damping="30" armature="4"><site site="foot"/><site site="pin"/></spatial>'
     '</tendon><actuator><general name="screw" tendon="rod" gear="-900" gainprm="0.02"/></actuator>',
+    "a part that turns with two joints": bodies(
+        f'<joint name="a" axis="0 1 0"/>{MASS}',
+        f'<joint name="b" axis="1 0 0"/>{FULL}',
+        f'<joint name="c" axis="0 1 1"/>{MASS}',
+    )
+    + '<tendon><fixed damping="0.3" armature="0.02"><joint joint="c" coef="-2"/><joint joint="a" coef="3"/>'
+    "</fixed></tendon>",
     "shapes as inertia": bodies(
         '<joint name="a" axis="0 1 0"/><geom type="box" size="0.1 0.05 0.2" pos="0.1 0 0" euler="10 0 20"/>'
         '<geom type="sphere" size="0.07" pos="0 0.1 0" mass="0.3"/>',

@@ -181,6 +181,9 @@ class TransmissionCoupling(Effect):
     confused_with = ("fluid_drag",)
     experiment = "the two joints moved one at a time, then together"
     shown = at(inertia=0.0, viscous=2.0, dry=4.0, other=1.0)
+    laws = MappingProxyType(
+        {"armature": "inertia", "damping": "viscous", "friction": "dry", "other": "other", "ratio": "ratio"}
+    )
 
     @classmethod
     def stands_at(cls, arm: Arm, number: int | None) -> bool:

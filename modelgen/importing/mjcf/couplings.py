@@ -11,11 +11,13 @@ from modelgen.importing.mjcf.levers import Levers
 from modelgen.importing.mjcf.passive import passive_laws
 from modelgen.importing.mjcf.settings import ACTUATORS, Defaults
 from modelgen.importing.resistance import POWERS
-from modelgen.importing.robot import Closure, SourceJoint
+from modelgen.importing.robot import Closure, SourceJoint, SourcePair
 from modelgen.importing.xml_text import Element
 
 # Attributes by which a tendon acts on what it runs along.
 _ACTS = ("stiffness", "damping", "frictionloss", "armature", "range", "springlength")
+# Power of a joint's coefficient by which a property is greater there than along the tendon.
+ALONG = {"armature": 2, "damping": 2, "friction": 1}
 
 
 def closures_of(root: Element, defaults: Defaults, levers: Collection[str]) -> Iterator[Closure]:
@@ -37,7 +39,26 @@ def closures_of(root: Element, defaults: Defaults, levers: Collection[str]) -> I
                 f"{text}; hold them (--lock), or take it out",
                 joints=tuple(part.text("joint") for part in tendon.all("joint")),
                 links=tuple(part.text("site") for part in tendon.all("site")),
+                pair=None if name in pulled else _pair(tendon),
             )
+
+
+def _pair(tendon: Element) -> SourcePair | None:
+    """What turns with two joints and has inertia or friction alone; None where it is more."""
+    parts = tendon.all("joint")
+    found = tendon.damping() | {
+        own: tendon.number(theirs, 0.0)
+        for own, theirs in (("armature", "armature"), ("friction", "frictionloss"))
+    }
+    if tendon.tag != "fixed" or len(parts) != 2 or len(tendon.children) != 2 or set(found) - set(ALONG):
+        return None
+    if any(_acts(tendon, name) for name in ("stiffness", "range", "springlength")):
+        return None
+    first, second = (part.number("coef") for part in parts)
+    if first == 0.0 or second == 0.0:
+        return None
+    scaled = {own: value * abs(first) ** ALONG[own] for own, value in found.items()}
+    return SourcePair(parts[0].text("joint"), parts[1].text("joint"), second / first, scaled)
 
 
 def _equality(element: Element, given: dict[str, str]) -> Closure:
