@@ -58,11 +58,11 @@ class Record:
         moved to their uniform axis.
     effort_hold : str or float
         When the efforts were read: "following", "previous" or "instant", or their delay [s].
+    hold_known : str
+        What says so: "mapping", "readings", or nothing, where it is the default.
     counts : tuple of float
         Step of the logged positions by joint, in the unit that was logged, 0 where there is none; empty: not
         known, to be read off the samples.
-    hold_known : str
-        What says so: "mapping", "readings", or nothing, where it is the default.
 
     Attributes
     ----------
