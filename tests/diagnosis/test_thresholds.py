@@ -18,6 +18,7 @@ from numpy.random import default_rng
 from modelgen.dataset import Record
 from modelgen.description import Inertial
 from modelgen.diagnosis.adequacy import lack_of_fit
+from modelgen.diagnosis.adequacy.checks import explains
 from modelgen.diagnosis.adequacy.lack_of_fit import in_parts
 from modelgen.diagnosis.adequacy.smooth_functions import smooth_functions
 from modelgen.diagnosis.adequacy.stand_ins import like_delta_bic
@@ -37,7 +38,7 @@ from modelgen.diagnosis.experiment.bench_tests import _motions
 from modelgen.diagnosis.experiment.discrimination import hypothesis
 from modelgen.diagnosis.extended.test_errors import compared
 from modelgen.diagnosis.options import Options, Thresholds
-from modelgen.diagnosis.selection.cause import Cause
+from modelgen.diagnosis.selection.cause import Cause, Selection
 from modelgen.diagnosis.selection.compliance import member
 from modelgen.diagnosis.selection.rivals import ambiguity_set, lesser_rivals, needed_behind
 from modelgen.diagnosis.selection.stepwise import least_evidence, threshold
@@ -118,6 +119,14 @@ def still(limits: Thresholds, share: float, count: int = 400) -> Any:
         model=SimpleNamespace(grouping=SimpleNamespace(base=[])),
     )
     return refusal(lambda: check_motion(given))  # type: ignore[arg-type]
+
+
+def explaining(limits: Thresholds) -> Any:
+    """Whether a constant is said to explain a constant force."""
+    equations = known(limits)
+    trial = law(equations, np.ones_like)
+    system = System(equations, with_columns(equations, trial))
+    return explains(0, Selection([Cause(trial, 0.0, 0.0, 0.0)], system, ())).passed
 
 
 def stepped(limits: Thresholds) -> Any:
@@ -400,6 +409,7 @@ CASES: dict[str, tuple[Value, Seen]] = {
     "adequacy.min_phase_rows": (1e6, repeats),
     "adequacy.min_scatter_rows": (1e6, repeats),
     "adequacy.null_share": (0.9, lambda t: like_delta_bic(t.adequacy)),
+    "adequacy.min_explained_share": (1.1, explaining),
     "adequacy.max_counts_ratio": (1.0, counted),
     "adequacy.bend_lengths": ((0.3, 0.6), bending),
     "adequacy.spot_length": (0.3, bending),

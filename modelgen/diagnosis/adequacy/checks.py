@@ -9,12 +9,15 @@ import numpy as np
 
 from modelgen.diagnosis.adequacy.dominance import Dominance, dominance
 from modelgen.diagnosis.adequacy.free_form import FreeForm, free_forms
+from modelgen.diagnosis.adequacy.lack_of_fit import repeating_in
 from modelgen.diagnosis.candidates import with_causes
 from modelgen.diagnosis.equations import Equations
-from modelgen.diagnosis.evidence import covariance
+from modelgen.diagnosis.evidence import covariance, mean_squares
 from modelgen.diagnosis.options.thresholds import in_band
 from modelgen.diagnosis.selection import Cause, Selection, needed_evidence
 from modelgen.diagnosis.validation import Check, agreement
+from modelgen.numeric import Array
+from modelgen.regression.weighted import moving_rows, weighted_fit
 
 
 @dataclass(frozen=True)
@@ -44,6 +47,7 @@ def examined(selection: Selection, equations: Equations) -> list[Examined]:
                 _undominated(dominance(cause, selection)),
                 _form(forms.get(cause.trial.candidate.joint)),
                 _stable(k, selection),
+                explains(k, selection),
             ),
         )
         for k, cause in enumerate(selection.causes)
@@ -183,3 +187,34 @@ def _stable(k: int, selection: Selection) -> Check:
     found = agreement(parts, system.equations, columns, own) if len(parts) > 1 else float("nan")
     text = "probability of records that differ as much in its size where that is the same in all"
     return Check("stable", None if np.isnan(found) else found >= least, False, found, least, text)
+
+
+def explains(k: int, selection: Selection) -> Check:
+    """How much of what repeats at its joints a cause takes away, beside all others.
+
+    A law that stands in for one that the catalogue lacks leaves more than the law itself would.
+    """
+    system = selection.system
+    equations, least = system.equations, system.equations.thresholds.adequacy.min_explained_share
+    trial = selection.causes[k].trial
+    columns = with_causes(equations, [c.trial for i, c in enumerate(selection.causes) if i != k])
+    theta = weighted_fit(equations.rows, columns)
+    without = [r.effort - c @ theta for r, c in zip(equations.rows, columns, strict=True)]
+    joints, sizes = trial.candidate.joints(system.n), mean_squares(system)
+    errors = _repeating_errors(equations)
+    before, after = (
+        float((np.maximum(0.0, repeating_in(left, equations) - errors) / sizes)[joints].sum())
+        for left in (without, system.residuals)
+    )
+    found = max(0.0, 1.0 - after / before) if before > 0 else float("nan")
+    text = "share of what repeats at its joints that it takes away"
+    return Check("explains", None if np.isnan(found) else found >= least, False, found, least, text)
+
+
+def _repeating_errors(equations: Equations) -> Array:
+    """Mean squares of what errors of the positions leave alike in every period, by joint (n,)."""
+    total, count = np.zeros(equations.n), moving_rows(equations.rows)
+    for r in equations.rows:
+        if r.repeated is not None:
+            total += (r.repeated**2 * r.moving).sum(axis=0)
+    return np.asarray(total / np.maximum(count, 1.0))

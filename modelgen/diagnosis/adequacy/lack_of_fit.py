@@ -20,7 +20,7 @@ from scipy import special
 
 from modelgen.dataset.processing.periods import folded
 from modelgen.diagnosis.adequacy.null_distribution import NULLS
-from modelgen.diagnosis.equations import Rows
+from modelgen.diagnosis.equations import Equations, Rows
 from modelgen.diagnosis.evidence import System, independent
 from modelgen.diagnosis.options.thresholds import AdequacyThresholds, EvidenceThresholds
 from modelgen.numeric import Array
@@ -230,11 +230,16 @@ def _tests(system: System) -> tuple[list[Test], int]:
 
 def repeating(system: System) -> Array:
     """Mean square of what repeats from period to period in the residuals of each joint (n,), less noise."""
-    n = system.n
+    return repeating_in(system.residuals, system.equations)
+
+
+def repeating_in(residuals: Sequence[Array], equations: Equations) -> Array:
+    """The same of other residuals of the equations, (M, n) by record."""
+    n = equations.n
     found = np.zeros(n)
     for j in range(n):
         between, within, means, scatter = 0.0, 0.0, 0, 0
-        for residual, r, rows in zip(system.residuals, system.rows, system.periods, strict=True):
+        for residual, r, rows in zip(residuals, equations.rows, equations.periods, strict=True):
             if rows is None:
                 continue
             table = folded(np.where(r.moving[:, j], residual[:, j], np.nan), rows)

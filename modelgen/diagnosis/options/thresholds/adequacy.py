@@ -162,6 +162,12 @@ class AdequacyThresholds(Group):
     min_stable_probability: float = entry(
         0.01, "probability", "A cause is reported as stable where records agree on its size (Wald).", JUDGED
     )
+    min_explained_share: float = entry(
+        0.5,
+        "1",
+        "A cause is reported to explain most where it takes away so much of what repeats at its joints.",
+        JUDGED,
+    )
     max_counts_ratio: float = entry(
         1.25,
         "1",
