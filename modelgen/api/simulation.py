@@ -14,7 +14,7 @@ from modelgen.numeric import Array
 from modelgen.options import SimulationOptions, changed
 from modelgen.progress import Progress, silent
 from modelgen.report.animation import animation
-from modelgen.simulation.output import picture, table, units
+from modelgen.simulation.output import log_table, picture, table, units
 from modelgen.simulation.workflow import Simulated, simulated
 
 
@@ -36,6 +36,9 @@ class Simulation(Result):
         (S, n) joint coordinates [rad, m] and their rates.
     inputs : ndarray or None
         (S, n) inputs [A for a driven joint, N m or N for another]; None of a free motion and of a replay.
+    log : mapping of str to ndarray, or None
+        Columns (S,) as a logger would have kept them: t [s], q<n> [rad, m] or qm<n> [motor unit], inputs. It
+        is a log that every function takes.
     ended : str
         Why the motion broke off before its time; empty where it did not.
     """
@@ -47,6 +50,7 @@ class Simulation(Result):
         self.q: Array = found.q
         self.dq: Array = found.dq
         self.inputs: Array | None = found.inputs
+        self.log = found.log
         self.ended = found.ended
 
     def to_json(self) -> dict[str, Any]:
@@ -60,13 +64,15 @@ class Simulation(Result):
         return self.found.data
 
     def table(self) -> str:
-        """The motion as CSV.
+        """The motion as CSV, or as a log has it where the options ask for encoders, noise or instants.
 
         Returns
         -------
         str
-            Columns t [s], q<n> [rad, m], dq<n>, and the inputs where there are any.
+            Columns t [s], q<n> [rad, m], dq<n>, and the inputs where there are any; of a log those of `log`.
         """
+        if self.log is not None:
+            return log_table(self.log)
         return table(self.found.plant, self.t, self.q, self.dq, self.inputs)
 
     def picture(self) -> str:

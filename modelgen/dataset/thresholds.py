@@ -114,7 +114,7 @@ class DatasetThresholds(Group):
         "conventions are half a period apart: more than three standard deviations",
     )
     instant_tolerance: float = entry(
-        0.1,
+        0.2,
         "sampling periods",
         "A convention of when efforts were read is what the data say to this, or to three deviations.",
         _CHOICE,

@@ -31,6 +31,7 @@ LONGEST = 2.0  # samples, of a step
 SETTLED = 0.02  # samples, or this part of the deviation, at which they end
 ELEMENTS = 25_000_000  # of the regressor at full rate, beyond which the beginnings of the records do
 DRAWS = 4  # of further roundings of the positions, where the data would tell without
+ALIKE = 0.25  # samples, half of what is between two conventions: joints that are so near agree
 APART = 4.0  # deviations by which a joint may be from all, if it is a matter of the log
 
 
@@ -90,7 +91,7 @@ def _delay(
     if not told.any():
         return None
     common, std = _common(delays, deviations)
-    apart = np.maximum(APART * deviations, limits.instant_tolerance)
+    apart = np.maximum(APART * deviations, ALIKE)
     return common, std, bool((np.abs(delays - common) <= apart)[told].all())
 
 

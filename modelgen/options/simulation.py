@@ -60,6 +60,16 @@ class SimulationOptions:
     bandwidth: float = option(5.0, "Of the controller.", "HZ", unit="Hz")
     method: str = option("", "fixed (compiled C), cvodes, DOP853, RK45, LSODA, Radau or BDF.", "NAME")
     step: float | None = option(None, "Longest fixed step.", "S", unit="s")
+    encoder: Coordinates = option(
+        "", "Write a log: positions in counts per turn, or metre; one by joint.", "COUNTS", kind=str
+    )
+    encoder_at: str = option("joint", "Where the encoders sit: joint, or motor (columns qm<n>).", "SIDE")
+    hold: str = option("", "What the logged efforts are: following, instant or previous.", "NAME")
+    noise: Coordinates = option(
+        "", "Standard deviation of the logged efforts.", "A", kind=str, unit="A, N m, N"
+    )
+    jitter: float = option(0.0, "Standard deviation of the logged samples' times.", "S", unit="s")
+    seed: int = option(0, "Of noise and jitter.", "N")
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "without", parts_of(self.without))

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import csv
 import io
+from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
@@ -83,6 +84,15 @@ def table(p: Plant, t: Array, q: Array, dq: Array, inputs: Array | None) -> str:
     columns = [t, q, dq] if inputs is None else [t, q, dq, inputs]
     writer.writerow(names if inputs is None else [*names, *input_names(p)])
     writer.writerows([f"{x:.12g}" for x in row] for row in np.column_stack(columns))
+    return text.getvalue()
+
+
+def log_table(log: Mapping[str, Array]) -> str:
+    """CSV of a log's columns (S,)."""
+    text = io.StringIO()
+    writer = csv.writer(text, lineterminator="\n")
+    writer.writerow(log)
+    writer.writerows([f"{x:.12g}" for x in row] for row in np.column_stack(list(log.values())))
     return text.getvalue()
 
 

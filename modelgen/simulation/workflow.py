@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any
@@ -19,6 +19,7 @@ from modelgen.numeric import Array
 from modelgen.options import ModelOptions, SimulationOptions
 from modelgen.progress import Progress, silent
 from modelgen.simulation.control import Control, controller
+from modelgen.simulation.measured import HOLDS, Sensors, log_of
 from modelgen.simulation.metrics import repeated, scores
 from modelgen.simulation.output import facts, joint_scores
 from modelgen.simulation.plant import Plant, plant
@@ -38,7 +39,8 @@ class Simulated:
     t: (S,) [s]. q, dq: (S, n) joint coordinates [rad, m; /s]. inputs: (S, n) [A; N m, N], None of a free
     motion and of a replay. measured: (S, n) positions of the first log [rad, m]. replays, logs: one by log.
     trajectory: of a motion without a log. ended: why it stopped before its time, empty where it did not.
-    note: where the parameters came from, empty where they are the description's or were given.
+    note: where the parameters came from, empty where they are the description's or were given. log: columns
+    of what a logger would have kept, None where nobody asked for it.
     """
 
     plant: Plant
@@ -52,6 +54,7 @@ class Simulated:
     logs: tuple[str, ...] = ()
     ended: str = ""
     note: str = ""
+    log: Mapping[str, Array] | None = None
 
     @cached_property
     def data(self) -> dict[str, Any]:
@@ -81,8 +84,28 @@ def simulated(
                 f"parameters: {arm.name}_parameters.yaml beside the description, which has no nominal values"
             )
     made = plant(arm, parameters, lock=locks(o.lock), payload=numbers("--payload", o.payload))
+    sensors = _sensors(made, o)
+    if logs and sensors is not None:
+        raise InputError("--encoder, --hold, --noise, --jitter: the log has its own; expected no --log")
     found = _against(made, logs, o, progress) if logs else _alone(made, o, progress)
-    return replace(found, note=note)
+    kept = None if sensors is None else log_of(made, found.t, found.q, found.inputs, sensors)
+    return replace(found, note=note, log=kept)
+
+
+def _sensors(p: Plant, o: SimulationOptions) -> Sensors | None:
+    """How the motion is read, None where nothing of that is asked for. Raises InputError."""
+    if o.encoder_at not in ("joint", "motor"):
+        raise InputError(f"--encoder-at: found '{o.encoder_at}', expected joint or motor")
+    if o.hold and o.hold not in HOLDS:
+        raise InputError(f"--hold: found '{o.hold}', expected {', '.join(HOLDS)}")
+    counts, noise = by_joint("--encoder", o.encoder, p.names), by_joint("--noise", o.noise, p.names)
+    for option, values in (("--encoder", counts), ("--noise", noise)):
+        if (values < 0.0).any():
+            raise InputError(f"{option}: found {values.min():g}, expected 0 or more")
+    motor = o.encoder_at == "motor"
+    if not (counts.any() or noise.any() or o.jitter or o.hold or motor):
+        return None
+    return Sensors(counts, motor, o.hold, noise, o.jitter, o.seed)
 
 
 def _alone(p: Plant, o: SimulationOptions, progress: Progress) -> Simulated:

@@ -190,7 +190,7 @@ def cases(folder: Path) -> dict[str, tuple[Value, Seen]]:
         "max_rest_weight": (0.5, moving),
         "short_rest_cutoff_periods": (0.2, awake),
         "max_instant_std": (0.01, lambda limits: fitting(0.02, 0.05, STEP, limits)),
-        "instant_tolerance": (0.3, lambda limits: fitting(0.25, 0.01, STEP, limits)),
+        "instant_tolerance": (0.02, lambda limits: fitting(0.15, 0.01, STEP, limits)),
         "min_rows": (100, rows),
         "max_period_difference": (1e-6, lambda limits: period_of(drifting(), None, limits)),
         "max_given_period_difference": (1e-4, given_period),

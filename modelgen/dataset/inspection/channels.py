@@ -248,6 +248,7 @@ def _at_rest(values: Array) -> float:
     return float(np.mean(travel <= RESTING * np.quantile(travel, 0.99)))
 
 
+@np.errstate(over="ignore", invalid="ignore")  # a wrong digit makes any number
 def _spikes(values: Array) -> int:
     """Readings far from both neighbours, on the same side, while the neighbours agree."""
     if len(values) < 5:

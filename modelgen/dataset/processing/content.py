@@ -18,6 +18,7 @@ from modelgen.dataset.thresholds import USUAL, DatasetThresholds
 from modelgen.errors import InputError
 from modelgen.numeric import Array
 
+NOISIER = 3.0  # times its rounding, from which on a position has other noise
 TOP = 0.35  # of the rate: central differences see little above
 
 
@@ -51,9 +52,13 @@ class Spectrum:
     def quiet(self, begin: float, share: float, rounded: float) -> float:
         """Highest cut-off [Hz] that leaves noise a share of the power of the accelerations.
 
-        What their spectrum holds beyond its valley, looked for from `begin` [Hz] on, and the valley's level
-        below it, counts as noise. rounded: share that rounding may feign.
+        Where rounding is all the noise there is, it is known; rounded: the share that it may feign. Else
+        what the spectrum holds beyond its valley, looked for from `begin` [Hz] on, and the valley's level
+        below it, counts as noise.
         """
+        if self.rounding_alone:
+            noisy = self.feigned > rounded
+            return float(self.f[np.argmax(noisy)]) if noisy.any() else float(self.f[-1] + self.f[1])
         f, accelerations = self.f, self.power * (2 * np.pi * self.f) ** 2
         edges = max(begin, f[1]) * 2.0 ** np.arange(0.0, 20.0, 0.5)
         bands = [(f >= low) & (f < high) for low, high in pairwise(edges)]
@@ -63,6 +68,13 @@ class Spectrum:
         noisy = noise > share * np.sum(accelerations[f < valley])
         noisy |= self.feigned > rounded
         return float(f[np.argmax(noisy)]) if noisy.any() else float(f[-1] + f[1])
+
+    @property
+    def rounding_alone(self) -> bool:
+        """Whether the positions have steps, and no noise beside them, in the upper half of the spectrum."""
+        upper = self.f > 0.5 * self.f[-1]
+        power, rounding = self.power[upper], self.rounding[upper]
+        return bool(rounding.any() and np.median(power) < NOISIER * np.median(rounding))
 
     @property
     def feigned(self) -> Array:
