@@ -190,6 +190,9 @@ def _whole(
     found = identified(fitted, held)
     if options == Options():
         found = replace(found, doubts=_doubts(fitted, found, evaluator))
+    points = [log for k, log in enumerate([*train, *test]) if len(payloads.get(k, ())) == 1]
+    if points:
+        found = replace(found, doubts=(*found.doubts, _at_the_origin(points)))
     others: tuple[Alternative, ...] = ()
     if o.compare_drives:
         progress("identifying without the drives", 0, None)
@@ -200,6 +203,15 @@ def _whole(
         parts = folds(training, o.folds, chosen, identified)
     log = inspect_records(fitted, testing, chosen, periods, instant=instant)
     return Outcome(found, others, fitted[0], chosen, log, parts)
+
+
+def _at_the_origin(logs: Sequence[Any]) -> str:
+    """What is assumed of payloads of which the mass alone is given."""
+    names = ", ".join(log if isinstance(log, str) else getattr(log, "name", "a table") for log in logs)
+    return (
+        f"The payload of {names} is taken as a point at the origin of the last link's frame: where is it? "
+        "--payload LOG=KG,X,Y,Z says so, in metres in that frame."
+    )
 
 
 def _doubts(train: Sequence[Prepared], found: Identification, evaluator: Evaluator) -> tuple[str, ...]:

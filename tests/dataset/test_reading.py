@@ -142,7 +142,10 @@ ONES = np.linspace(0, 1, len(T))
         (setting("q1", 10, np.inf), "found inf in the column q1"),
         (setting("q1", slice(None), 0.5), r"the position q1 is 0\.5 in all 1600 samples.*locked: \{hip: "),
         (setting("i2", slice(None), 0.0), "the effort i2 is 0 in all 1600 samples.*leave the effort columns"),
-        (scaled("q1", 180 / np.pi), "these look like degrees; declare `unit: deg`"),
+        (
+            scaled("q1", 50.0),
+            "these look like degrees or the motor's positions; declare `unit: deg` or `side: motor`",
+        ),
         (scaled("q1", 1000.0), "q1 runs from .* correct unit, sign or offset"),
         (scaled("qm2", 2.0), "qm2 runs from .* joint knee from 0 to 20000 motor units"),
     ],

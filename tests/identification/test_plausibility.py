@@ -192,3 +192,10 @@ def test_consistent_parameters_hide_no_question(arm: mg.Arm, logs: list[Table]) 
     train, test = ({k: -x if k[0] == "i" else x for k, x in table.items()} for table in logs)
     found = mg.identify(arm, train, test, consistent=True)
     assert any("sign of the efforts the other way round" in doubt for doubt in found.to_json()["doubts"])
+
+
+def test_what_is_assumed_of_a_payload_without_a_place_is_asked(arm: mg.Arm, logs: list[Table]) -> None:
+    found = mg.identify(arm, *logs, payload={"0": 0.5})
+    assert any("at the origin of the last link's frame: where is it?" in x for x in found.to_json()["doubts"])
+    placed = mg.identify(arm, *logs, payload={"0": (0.5, 0.1, 0.0, 0.0)})
+    assert not any("where is it?" in x for x in placed.to_json()["doubts"])

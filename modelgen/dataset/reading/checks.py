@@ -122,22 +122,38 @@ def check_range(
         limits = f"joint {joint.name} from {low:.6g} to {high:.6g} {printed}"
         if excess > slack or not np.isfinite(q[:, k]).all():
             also = joint.drive.decides_motor if motor_side else ""
-            hint = _unit_hint(found, (low - slack, high + slack), unit, also)
+            ratio = None if motor_side else drives[k].ratio
+            hint = _unit_hint(found, (low - slack, high + slack), unit, also, ratio)
             raise InputError(f"{file}: {shown}, {limits}{hint}")
         if excess > 0.0:
             remarks.append(f"{shown}, {limits}")
     return remarks
 
 
-def _unit_hint(found: tuple[float, float], allowed: tuple[float, float], unit: str, also: str) -> str:
-    """The unit in which the values would be allowed, else what may be wrong, `also` besides the limits."""
+def _unit_hint(
+    found: tuple[float, float],
+    allowed: tuple[float, float],
+    unit: str,
+    also: str,
+    ratio: float | None,
+) -> str:
+    """The unit in which the values would be allowed, else what may be wrong, `also` besides the limits.
+
+    ratio: of the gear before the joint whose side these should not be, None where there is none.
+    """
     options = {
-        "rad": (("degrees", "deg", math.pi / 180), ("turns", "rev", 2 * math.pi)),
-        "m": (("millimetres", "mm", 1e-3), ("centimetres", "cm", 1e-2)),
-    }.get(unit, ())
-    for words, name, factor in options:
+        "rad": [("degrees", "`unit: deg`", math.pi / 180), ("turns", "`unit: rev`", 2 * math.pi)],
+        "m": [("millimetres", "`unit: mm`", 1e-3), ("centimetres", "`unit: cm`", 1e-2)],
+    }.get(unit, [])
+    if ratio is not None and abs(ratio) > 1.0:
+        options.append(("the motor's positions", "`side: motor`", 1.0 / ratio))
+    fitting = []
+    for words, key, factor in options:
         low, high = sorted((found[0] * factor, found[1] * factor))
         if low >= allowed[0] and high <= allowed[1]:
-            return f": these look like {words}; declare `unit: {name}` in a mapping file (--mapping)"
+            fitting.append((words, key))
+    if fitting:
+        words, keys = (" or ".join(x) for x in zip(*fitting, strict=True))
+        return f": these look like {words}; declare {keys} in a mapping file (--mapping)"
     described = f"the limits or {also}" if also else "the limits"
     return f": correct unit, sign or offset in a mapping file (--mapping), or {described} in the description"
