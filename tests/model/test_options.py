@@ -46,6 +46,7 @@ class Case:
         known |= {"dq_r": self.dq[::-1], "ddq_r": self.ddq[::-1]}
         known |= {"sin_q": np.sin(self.q), "cos_q": np.cos(self.q)}
         known |= {"parameters": self.standard if suffix else self.base}
+        known |= {"dt": np.array([1e-3]), "gain": np.full_like(self.dq, 20.0), "state": 0.1 * self.dq}
         return {a.name: known[a.name] for a in function.arguments if a.name != "geometry"}
 
 

@@ -169,8 +169,8 @@ def counted(text: str, arm: str) -> dict[str, int]:
 
 
 def _function_name(found: Sequence[str], arm: str) -> str:
-    """The name of the function that the file defines: `int <arm>_<name>(`."""
+    """The name of the function that the file defines: `<arm>_status_t <arm>_<name>(`."""
     for kind, name, bracket in zip(found, found[1:], found[2:], strict=False):
-        if kind == "int" and bracket == "(" and name.startswith(f"{arm}_"):
+        if kind == f"{arm}_status_t" and bracket == "(" and name.startswith(f"{arm}_"):
             return name[len(arm) + 1 :]
     raise ValueError("no function")
