@@ -12,6 +12,7 @@
 #define AT_LEAST_1(x) ((x) > 0 ? (x) : 1)
 #define Y (2 * N + Z)
 #define EVENTS_A_STEP 64
+#define HELD 1e-10 /* of a contact's own compliance, which others leave it where they hold it too */
 
 enum { DONE = 0, LEFT = 1, NOT_FINITE = 2, NO_CONTACT = 3, CHATTER = 4 };
 
@@ -30,11 +31,60 @@ static double speed(int c, const double *dq)
     return v;
 }
 
-/* s of the contacts of mode 0, so that they do not move; 0 where there are none such. */
+/* x of the eliminated equations, right times their right side; x is given where a column has no pivot. */
+static void backwards(int k, const int *at, double m[][AT_LEAST_1(C) + 1], double right, double *x)
+{
+    for (int i = k - 1; i >= 0; --i) {
+        if (at[i] >= 0) {
+            const double *r = m[at[i]];
+            x[i] = right * r[k];
+            for (int j = i + 1; j < k; ++j) {
+                x[i] -= r[j] * x[j];
+            }
+            x[i] /= r[i];
+        }
+    }
+}
+
+static double largest(int k, const double *x, double t, const double *z)
+{
+    double most = 0.0;
+    for (int i = 0; i < k; ++i) {
+        most = fmax(most, fabs(x[i] + t * z[i]));
+    }
+    return most;
+}
+
+/* x + t z whose largest element is least: where two are alike, or one vanishes. */
+static void share(int k, const double *z, double *x)
+{
+    double best = 0.0, least = largest(k, x, 0.0, z);
+    for (int a = 0; a < k; ++a) {
+        for (int b = 0; b <= a; ++b) {
+            for (int sign = -1; sign <= 1; sign += 2) {
+                const double slope = b == a ? z[a] : z[a] + sign * z[b];
+                const double t = slope == 0.0 ? 0.0 : -(b == a ? x[a] : x[a] + sign * x[b]) / slope;
+                const double most = largest(k, x, t, z);
+                if (most < least) {
+                    least = most;
+                    best = t;
+                }
+            }
+        }
+    }
+    for (int i = 0; i < k; ++i) {
+        x[i] += best * z[i];
+    }
+}
+
+/*
+ * s of the contacts of mode 0, so that they do not move; 0 where there are none such. Where more contacts stick
+ * than can move (two joints, and what turns with both), they share the load as evenly as can be.
+ */
 static int hold(const double *out, const int *mode, double *s)
 {
     int stuck[AT_LEAST_1(C)], k = 0;
-    double m[AT_LEAST_1(C)][AT_LEAST_1(C) + 1];
+    double m[AT_LEAST_1(C)][AT_LEAST_1(C) + 1], own[AT_LEAST_1(C)];
     for (int c = 0; c < C; ++c) {
         s[c] = mode[c];
         if (mode[c] == 0) {
@@ -58,35 +108,48 @@ static int hold(const double *out, const int *mode, double *s)
             }
         }
         m[i][k] = right;
+        own[i] = fabs(m[i][i]);
     }
+    int at[AT_LEAST_1(C)], row = 0; /* row of the pivot of each column, -1 where others hold it already */
     for (int i = 0; i < k; ++i) {
-        int best = i;
-        for (int r = i + 1; r < k; ++r) {
+        int best = row;
+        at[i] = -1;
+        if (!(own[i] > 0.0)) {
+            return NO_CONTACT;
+        }
+        for (int r = row + 1; r < k; ++r) {
             if (fabs(m[r][i]) > fabs(m[best][i])) {
                 best = r;
             }
         }
-        if (!(fabs(m[best][i]) > 0.0)) {
-            return NO_CONTACT;
+        if (row >= k || !(fabs(m[best][i]) > HELD * own[i])) {
+            continue;
         }
-        for (int j = i; j <= k && best != i; ++j) {
-            const double x = m[i][j];
-            m[i][j] = m[best][j];
+        for (int j = i; j <= k && best != row; ++j) {
+            const double x = m[row][j];
+            m[row][j] = m[best][j];
             m[best][j] = x;
         }
-        for (int r = i + 1; r < k; ++r) {
-            const double f = m[r][i] / m[i][i];
+        for (int r = row + 1; r < k; ++r) {
+            const double f = m[r][i] / m[row][i];
             for (int j = i; j <= k; ++j) {
-                m[r][j] -= f * m[i][j];
+                m[r][j] -= f * m[row][j];
             }
         }
+        at[i] = row++;
     }
-    for (int i = k - 1; i >= 0; --i) {
-        for (int j = i + 1; j < k; ++j) {
-            m[i][k] -= m[i][j] * m[j][k];
+    double x[AT_LEAST_1(C)] = {0.0};
+    backwards(k, at, m, 1.0, x);
+    for (int i = 0; i < k; ++i) {
+        if (at[i] < 0) {
+            double z[AT_LEAST_1(C)] = {0.0};
+            z[i] = 1.0;
+            backwards(k, at, m, 0.0, z);
+            share(k, z, x);
         }
-        m[i][k] /= m[i][i];
-        s[stuck[i]] = m[i][k];
+    }
+    for (int i = 0; i < k; ++i) {
+        s[stuck[i]] = x[i];
     }
     return DONE;
 }

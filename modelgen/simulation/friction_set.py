@@ -31,6 +31,7 @@ from modelgen.numeric import Array
 
 _DIRECTION = sp.Symbol("direction", real=True)
 Modes = tuple[int, ...]  # of every contact: 1 or -1 sliding, 0 sticking
+HELD = 1e-10  # of a contact's own compliance, that others leave it where they hold it; as in driver.c
 
 
 @dataclass(frozen=True)
@@ -185,20 +186,57 @@ def elastic(arm: Arm) -> bool:
 def hold(free: Array, dry: Array, rows: Array, modes: Modes) -> Array:
     """s (c,): the directions of sliding contacts, and what keeps the sticking ones from accelerating.
 
-    free: (n,), dry: (n, c), rows: (c, n). Raises InputError where sticking contacts have no friction.
+    Where more contacts stick than can move (two joints, and what turns with both), they share the load as
+    evenly as can be: they stick as long as any share of it lets them. free: (n,), dry: (n, c), rows: (c, n).
+    Raises InputError where sticking contacts have no friction.
     """
     s = np.array(modes, dtype=float)
     stuck = [k for k, mode in enumerate(modes) if mode == 0]
     if stuck:
-        pull = rows[stuck] @ (free + dry @ s)
-        try:
-            s[stuck] = -np.linalg.solve(rows[stuck] @ dry[:, stuck], pull)
-        except np.linalg.LinAlgError:
+        pull, matrix = rows[stuck] @ (free + dry @ s), rows[stuck] @ dry[:, stuck]
+        if not np.diag(matrix).all():
             raise InputError(
                 "a joint with dry friction in its description has none among its parameters; "
                 "expected a positive value, or the effect left out"
-            ) from None
+            )
+        alone = np.abs(rows[stuck]).sum(axis=0).max() <= 1.0  # no two along the same coordinate
+        s[stuck] = -(np.linalg.solve(matrix, pull) if alone else _borne(matrix, pull))
     return s
+
+
+def _borne(matrix: Array, right: Array) -> Array:
+    """x with matrix x = right, as even as can be where there are many; eliminated as in driver.c."""
+    own, count = np.abs(np.diag(matrix)), len(right)
+    m = np.column_stack([matrix, right])
+    at: list[int] = []  # columns that have a pivot, in the order of its rows
+    for i in range(count):
+        row = len(at)
+        best = row + int(np.argmax(np.abs(m[row:, i]))) if row < count else 0
+        if row < count and abs(m[best, i]) > HELD * own[i]:
+            m[[row, best]] = m[[best, row]]
+            m[row + 1 :] -= np.outer(m[row + 1 :, i] / m[row, i], m[row])
+            at.append(i)
+    x = _backwards(m, at, np.zeros(count), 1.0)
+    for i in set(range(count)) - set(at):
+        x = _shared(x, _backwards(m, at, np.eye(count)[i], 0.0))
+    return x
+
+
+def _backwards(m: Array, at: list[int], x: Array, right: float) -> Array:
+    """x of the eliminated equations; it is given where a column has no pivot."""
+    for row in reversed(range(len(at))):
+        i = at[row]
+        x[i] = (right * m[row, -1] - m[row, i + 1 : -1] @ x[i + 1 :]) / m[row, i]
+    return x
+
+
+def _shared(x: Array, z: Array) -> Array:
+    """x + t z whose largest element is least: where two are alike, or one vanishes."""
+    pairs = [(x[a], z[a]) for a in range(len(x))]
+    pairs += [(x[a] + k * x[b], z[a] + k * z[b]) for a in range(len(x)) for b in range(a) for k in (-1, 1)]
+    tried = [0.0, *(-left / slope for left, slope in pairs if slope)]
+    best: float = min(tried, key=lambda t: float(np.abs(x + t * z).max()))
+    return np.asarray(x + best * z)
 
 
 def accelerated(free: Array, dry: Array, s: Array, modes: Modes, own: list[int]) -> Array:

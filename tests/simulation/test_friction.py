@@ -11,7 +11,7 @@ from arms_support import ARMS
 from scipy.optimize import brentq
 from simulation_support import pendulum, shipped, slider
 
-from modelgen.description import EffectUse
+from modelgen.description import EffectUse, loads
 from modelgen.simulation import plant, simulate
 
 MASS, LENGTH, G = 2.0, 0.4, 9.81
@@ -141,3 +141,60 @@ def test_several_joints_stick_at_once(name: str, method: str) -> None:
     found = simulate(heavy, q0, 0.0, 0.5, 200.0, method=method)
     assert (found.q == q0).all()
     assert ARMS[name].coordinates
+
+
+SHARED = """
+schema: 1
+convention: khalil_kleinfinger
+arms:
+  wrist:
+    gravity: [0, 0, 0]
+    joints:
+      - {name: a, alpha: 0, d: 0, r: 0, effects: [{coulomb_friction: {magnitude: 1}}]}
+      - name: b
+        alpha: 0
+        d: 0.3
+        r: 0
+        effects:
+          - coulomb_friction: {magnitude: 1}
+          - transmission_coupling: {inertia: 0, viscous: 0, dry: 1, other: 1, ratio: 1}
+    links:
+      a: {mass: 1, com: [0.2, 0, 0], inertia: [0.01, 0, 0, 0.01, 0, 0.01]}
+      b: {mass: 1, com: [0.2, 0, 0], inertia: [0.01, 0, 0, 0.01, 0, 0.01]}
+"""
+
+
+@pytest.mark.parametrize("method", ["fixed", "DOP853"])
+@pytest.mark.parametrize(
+    ("inputs", "holds"),
+    [
+        # b bears 1 and what turns with both 1, which a must bear too
+        ((0.0, 1.9), True),
+        ((0.0, 2.1), False),
+        ((1.9, 0.9), True),
+        ((1.9, -0.3), False),
+        ((-1.9, -1.9), True),
+        ((1.05, -1.05), False),
+    ],
+)
+def test_three_contacts_of_two_joints_stick_as_long_as_any_share_of_the_load_lets_them(
+    inputs: tuple[float, float], holds: bool, method: str
+) -> None:
+    u = np.tile(inputs, (51, 1))
+    found = simulate(plant(loads(SHARED)["wrist"]), [0.3, 0.7], 0.0, 0.05, 1000, u, method=method)
+    assert found.ended == ""
+    assert bool((found.q == found.q[0]).all()) == holds
+
+
+def test_steps_of_both_kinds_agree_where_three_contacts_come_to_rest_and_tear_loose() -> None:
+    t = np.arange(401) / 500
+    u = np.stack([2.5 * np.sin(17 * t), 2.5 * np.sin(31 * t)], axis=1)
+    made = plant(loads(SHARED)["wrist"])
+    one, other = (
+        simulate(made, [0.3, 0.7], 0.0, 0.8, 500, u, method=m, rtol=1e-11, atol=1e-12)
+        for m in ("fixed", "DOP853")
+    )
+    assert one.ended == other.ended == ""
+    still = (one.dq == 0.0).all(axis=1)
+    assert 0.02 < still.mean() < 0.98
+    np.testing.assert_allclose(one.q, other.q, atol=1e-7)
