@@ -92,6 +92,9 @@ int loop(loop_t *s, double log[], float last[])
     s->outside_time = s->changed_time = s->touched_time = -1.0;
     s->outside = s->changed = 0;
     s->alarms = 0;
+    for (j = 0; j < 3; ++j) {
+        s->named_time[j] = -1.0;
+    }
     reference(s, 0.0, q, dq, ddqr);
     for (k = 0; k < s->steps; ++k) {
         const double t = (double)k * s->dt;
@@ -154,6 +157,11 @@ int loop(loop_t *s, double log[], float last[])
             if (result[STATES + N + 1] > 0.0f && s->changed_time < 0.0) {
                 s->changed_time = t;
                 s->changed = (int)result[STATES + N + 1];
+            }
+            for (j = 0; j < 3; ++j) {
+                if ((((unsigned int)result[STATES + N + 1] >> j) & 1U) != 0U && s->named_time[j] < 0.0) {
+                    s->named_time[j] = t;
+                }
             }
             s->alarms += alarm && !before;
             before = alarm || (before && k % s->slow != 0);

@@ -24,6 +24,7 @@ typedef struct {
     double outside_time, changed_time, touched_time; /**< first alarms and contact [s], -1: none */
     long step, alarms;
     int outside, changed;
+    double named_time[3];   /**< first alarm of each parameter [s], -1: none */
     double largest[JOINTS]; /**< efforts from outside that the observer gave [N m] */
     float estimates[2 * 3]; /**< of the monitor at the end, and their deviations */
 } loop_t;

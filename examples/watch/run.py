@@ -115,6 +115,8 @@ def figures(hours: float, folder: Path) -> dict[str, Any]:
             "monitor": found.changed,
             "board": bool(times) and board.agrees(last, found),
         }
+    found, _, _ = simulated(library, HOUR, {**work, **events["payload"][0]})
+    summary["payload"]["named_after_s"] = round(found.named_time[2] - BEGIN, 3)
     summary["payload"]["mass_kg"] = round(SHARE * mass, 3)
     summary["instructions"] = board.instructions()
     return summary

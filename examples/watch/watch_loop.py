@@ -57,6 +57,7 @@ class Loop(ctypes.Structure):
         ("alarms", ctypes.c_long),
         ("outside", ctypes.c_int),
         ("changed", ctypes.c_int),
+        ("named_time", _joints),
         ("largest", _joints),
         ("estimates", ctypes.c_float * 6),
     ]

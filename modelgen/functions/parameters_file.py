@@ -99,18 +99,23 @@ def read_identification(
     if not isinstance(data.get("noise"), Mapping):
         raise InputError(f"{who}: holds no noise; identify again, with a test record")
     try:
-        noise = data["noise"]
-        lists = (noise["rmse"], noise["largest"], noise["correlation_s"], noise["rest_speed"])
+        noise, observer = data["noise"], data["noise"]["observer"]
+        lists = (
+            noise["input"],
+            noise["correlation_s"],
+            noise["rest_speed"],
+            observer["rms"],
+            observer["largest"],
+        )
         values = {p["name"]: float(p["value"]) for p in data["parameters"]}
         spreads = {p["name"]: float(p["std"]) for p in data["parameters"] if p["std"] is not None}
         rows = [tuple(float(x) for x in row) for row in lists]
-        found = Noise(
-            rows[0], rows[1], rows[2], rows[3], float(noise["cutoff_hz"]), float(noise["duration_s"]), spreads
-        )
+        gain, duration = float(observer["gain"]), float(observer["duration_s"])
+        found = Noise(rows[0], rows[1], rows[2], rows[3], rows[4], gain, duration, spreads)
     except (KeyError, TypeError, ValueError) as error:
         raise InputError(f"{who}: expected what modelgen identify writes, found {error} amiss") from error
-    if not all(x > 0 and isfinite(x) for x in (*found.input, *found.correlation, found.duration)):
-        raise InputError(f"{who}: expected errors, times and a duration above zero under `noise`")
+    if not all(x > 0 and isfinite(x) for x in (*found.input, *found.correlation, gain, duration)):
+        raise InputError(f"{who}: expected errors, times, a gain and a duration above zero under `noise`")
     return values, found
 
 

@@ -68,12 +68,15 @@ def _noise(found: Identification) -> dict[str, Any]:
         return {}
     return {
         "noise": {
-            "rmse": list(noise.input),
-            "largest": list(noise.largest),
+            "input": list(noise.input),
             "correlation_s": list(noise.correlation),
             "rest_speed": list(noise.rest_speed),
-            "cutoff_hz": noise.cutoff,
-            "duration_s": noise.duration,
+            "observer": {
+                "gain": noise.gain,
+                "rms": list(noise.rms),
+                "largest": list(noise.largest),
+                "duration_s": noise.duration,
+            },
         }
     }
 

@@ -10,7 +10,6 @@ from modelgen.dataset import Prepared
 from modelgen.errors import InputError
 from modelgen.evaluation import Evaluator
 from modelgen.functions import Model
-from modelgen.identification.noise import noise_of
 from modelgen.identification.objects import Validation
 from modelgen.identification.rows import Rows
 from modelgen.numeric import Array
@@ -33,8 +32,7 @@ def validate(
     more = [np.zeros_like(theta)] * len(records) if added is None else added
     whole = [y + c @ m for y, c, m in zip(regression.effort, regression.columns, more, strict=True)]
     measured = np.concatenate([y * g for y, g in zip(whole, gain, strict=True)])
-    residuals = regression.residuals(theta)
-    wrong = np.concatenate([e * g for e, g in zip(residuals, gain, strict=True)])
+    wrong = np.concatenate([e * g for e, g in zip(regression.residuals(theta), gain, strict=True)])
     moving = np.concatenate(regression.moving)
     if not moving.any():
         raise InputError(f"{records[0].record.name}: no joint moves in the test records; expected a motion")
@@ -48,10 +46,7 @@ def validate(
         share.append(100.0 * float(np.linalg.norm(e)) / max(float(np.linalg.norm(y)), 1e-300))
     t = np.concatenate([p.t for p in records])
     unit = records[0].effort_unit or ("",) * measured.shape[1]
-    noise = noise_of(records, residuals, regression.moving)
-    return Validation(
-        unit, np.array(rmse), np.array(share), np.array(judged), t, measured, measured - wrong, noise
-    )
+    return Validation(unit, np.array(rmse), np.array(share), np.array(judged), t, measured, measured - wrong)
 
 
 def regression_of(

@@ -36,6 +36,7 @@ from modelgen.identification.effort_instant import at_instants, effort_instant
 from modelgen.identification.folds import Folds, folds
 from modelgen.identification.identify import METHODS, Instruments, identify
 from modelgen.identification.misread import check_reading
+from modelgen.identification.noise import with_noise
 from modelgen.identification.objects import Identification
 from modelgen.identification.output import errors, to_json
 from modelgen.identification.simulated_instruments import Tracking
@@ -193,6 +194,7 @@ def _whole(
     points = [log for k, log in enumerate([*train, *test]) if len(payloads.get(k, ())) == 1]
     if points:
         found = replace(found, doubts=(*found.doubts, _at_the_origin(points)))
+    found = with_noise(found, options, held, bool(payloads))
     others: tuple[Alternative, ...] = ()
     if o.compare_drives:
         progress("identifying without the drives", 0, None)
@@ -291,6 +293,7 @@ def _streamed(
         physical=o.consistent,
         progress=lambda done, total: progress(doing, done, total),
     )
+    found = with_noise(found, options, testing, False)
     heads = [next(iter(stream)) for stream in streams]
     samples = [stream.samples for stream in streams]
     log = inspect_records(heads, tests, chosen, [None] * len(heads), samples, instant)

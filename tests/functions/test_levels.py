@@ -13,7 +13,7 @@ from c_support import shared_library
 import modelgen as mg
 from modelgen.errors import InputError
 from modelgen.functions import Options
-from modelgen.functions.levels import BETWEEN_FALSE_ALARMS, passage_level
+from modelgen.functions.levels import BETWEEN_FALSE_ALARMS, MARGIN, passage_level
 
 ARM = "ariane4"
 
@@ -23,12 +23,10 @@ def identification() -> dict[str, Any]:
     assert nominal is not None
     parameters = [{"name": k, "value": v, "std": 0.02 * abs(v) or None} for k, v in nominal.items()]
     noise = {
-        "rmse": [0.02, 0.03, 0.02],
-        "largest": [0.08, 0.12, 0.2],
+        "input": [0.02, 0.03, 0.02],
         "correlation_s": [0.05, 0.04, 0.02],
         "rest_speed": [0.01, 0.02, 0.03],
-        "cutoff_hz": 8.0,
-        "duration_s": 60.0,
+        "observer": {"gain": 20.0, "rms": [1.0, 2.0, 1.0], "largest": [3.0, 6.0, 8.0], "duration_s": 60.0},
     }
     return {"schema": 1, "arm": ARM, "parameters": parameters, "noise": noise}
 
@@ -64,13 +62,10 @@ def test_gains_and_thresholds_are_those_of_the_noise(folder: Path) -> None:
     library = ctypes.CDLL(str(shared_library(folder, ARM, "double")))
     names = (f"{ARM}_observer_gain", f"{ARM}_observer_threshold")
     gains, thresholds = (np.array((ctypes.c_double * 3).in_dll(library, name)) for name in names)
-    bandwidth = 2 * np.pi * 8.0 / 3
+    bandwidth = 20.0
     np.testing.assert_allclose(gains, bandwidth, rtol=1e-5)
-    model = mg.build_model(ARMS[ARM])
-    q = [np.linspace(r.low, r.high, 1001) for r in model.functions["gravity"].function.ranges]
-    largest = np.abs(model.functions["drive_gain"](np.array(q).T)).max(axis=0)
     level, seen = passage_level(bandwidth, 3 * BETWEEN_FALSE_ALARMS), passage_level(bandwidth, 60.0)
-    expected = level * np.maximum([0.02, 0.03, 0.02], np.array([0.08, 0.12, 0.2]) / seen) * largest
+    expected = MARGIN * level * np.maximum([1.0, 2.0, 1.0], np.array([3.0, 6.0, 8.0]) / seen)
     np.testing.assert_allclose(thresholds, expected, rtol=1e-3)
     alarms = library.ariane4_observer_alarms
     for scale, bits in (([0.99, -0.99, 0.0], 0), ([1.01, 0.0, -1.01], 5), ([0.0, -1.01, 0.5], 2)):
@@ -98,7 +93,7 @@ def test_a_changed_parameter_is_an_alarm_beyond_what_is_left_open(folder: Path) 
         ({"noise": None}, "holds no noise; identify again, with a test record"),
         ({"arm": "ur10e"}, "belongs to the arm 'ur10e', found ariane4; give --arm ur10e"),
         ({"parameters": 3}, "expected what modelgen identify writes as identification.json"),
-        ({"noise": {"rmse": [1.0]}}, "expected what modelgen identify writes, found 'largest' amiss"),
+        ({"noise": {"input": [1.0]}}, "expected what modelgen identify writes, found 'observer' amiss"),
     ],
 )
 def test_another_file_is_refused(change: dict[str, Any], message: str, tmp_path: Path) -> None:
