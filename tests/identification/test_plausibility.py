@@ -199,3 +199,25 @@ def test_what_is_assumed_of_a_payload_without_a_place_is_asked(arm: mg.Arm, logs
     assert any("at the origin of the last link's frame: where is it?" in x for x in found.to_json()["doubts"])
     placed = mg.identify(arm, *logs, payload={"0": (0.5, 0.1, 0.0, 0.0)})
     assert not any("where is it?" in x for x in placed.to_json()["doubts"])
+
+
+def test_efforts_that_are_cut_off_are_refused_where_it_matters(arm: mg.Arm, logs: list[Table]) -> None:
+    train, test = logs
+    top = 0.6 * float(np.abs(train["i1"]).max())
+    cut, again = (x | {"i1": np.clip(x["i1"], -top, top)} for x in (train, log(arm, 3)))
+    for act in (
+        lambda: mg.identify(arm, cut, test),
+        lambda: mg.diagnose(arm, [cut, again], test, experiment=False, effects=["friction_offset:1"]),
+    ):
+        with pytest.raises(mg.InputError, match=r"effort of joint 1 stands at .* is it cut off there"):
+            act()
+
+
+@pytest.mark.parametrize("step", [0.01, 0.25])
+def test_coarse_currents_are_not_cut_off(step: float, arm: mg.Arm, logs: list[Table]) -> None:
+    coarse = [{k: step * np.rint(x / step) if k[0] == "i" else x for k, x in t.items()} for t in logs]
+    found = mg.identify(arm, *coarse)
+    assert not any("cut off" in remark for remark in found.to_json()["log"]["remarks"])
+    truth = mg.build_model(arm).nominal
+    hits = [abs(e.value - truth[name]) < 3 * e.std for name, e in found.parameters.items()]
+    assert sum(hits) >= len(hits) - 1

@@ -101,19 +101,25 @@ def _spectrum(joint: int, q: Array, step: float, rate: float) -> Spectrum:
     window = int(min(len(speed), max(64, 10.0 * rate)))
     f, power = signal.welch(speed, fs=rate, nperseg=window, detrend="constant")
     f, power = f[f < TOP * rate], power[f < TOP * rate]
-    rounding = rounding_power(step, rate, f)
+    rounding, total = rounding_power(step, rate, f), step**2 / 12.0
+    upper = f > 0.5 * f[-1]
+    if step:  # a dither, or a little noise, adds to it
+        more = float(np.median(power[upper] / rounding[upper]))
+        more = more if 1.0 < more < NOISIER else 1.0
+        rounding, total = more * rounding, more * total
     white = (np.sin(2 * np.pi * f / rate) * rate) ** 2
     positions = np.divide(power, white, out=np.zeros_like(power), where=white > 0.0)
-    return Spectrum(joint, f, power, rounding, f <= _seen(f, positions, step), white)
+    return Spectrum(joint, f, power, rounding, f <= _seen(f, positions, total), white)
 
 
-def _seen(f: Array, positions: Array, step: float) -> float:
-    """Frequency [Hz] above which positions of such a spectrum (F,) have no more power than their rounding.
+def _seen(f: Array, positions: Array, total: float) -> float:
+    """Frequency [Hz] above which positions of such a spectrum (F,) have no more power than their rounding,
+    which has `total`.
 
     Rounding of a slow motion is not white; the power of all of it is known.
     """
     beyond = np.cumsum(positions[::-1])[::-1] * f[1]
-    hidden = beyond <= step**2 / 12.0
+    hidden = beyond <= total
     return float(f[max(1, int(np.argmax(hidden)))]) if hidden.any() else float(f[-1])
 
 
