@@ -18,8 +18,8 @@ x86-64-v3, `-O3`. modelgen's generation writes all of its functions, with parame
 trace's figure is the sum of the four functions. What takes the compiler or the tracer more than {limit} s of CPU time is
 left out. Exponent: log of the ratio over log of the ratio of joints, from the arm before.
 
-Forward dynamics: modelgen solves with the mass matrix, of the order of the cube of a chain's length; the traced `aba`,
-of the order of its length, takes fewer instructions for chains of more than about twenty joints.
+Forward dynamics: modelgen takes the cheaper of the mass matrix with its solution, of the order of the cube of a chain's
+length, and of articulated bodies (Featherstone 2008), of the order of its length: the latter from about ten joints on.
 
 Solid: modelgen; dashed: the trace; crosses: modelgen, the trees.
 

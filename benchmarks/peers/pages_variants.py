@@ -27,7 +27,7 @@ cycles each on a Cortex-M4F. Sine and cosine inlined save up to 11 %, but stand 
 (266 bytes on x86); a header of one's own can have it so (`-D<ARM>_SINCOS`). Other orders of operands change the figures
 by what the compiler's allocation of registers makes of them, up or down by 4 %, and differently for every arm: to
 choose the best one by counting would tie the code to one compiler. Articulated bodies in place of
-mass matrix and solution are what the traced `aba` shows.
+mass matrix and solution take more operations in arms of up to eight joints.
 """
 _TARGET = """\
 On a Cortex-M4F (arm-none-eabi-gcc, `-O2`, single precision), the same changes in per cent of the instructions.
