@@ -121,7 +121,9 @@ def test_the_monitor_is_weighted_least_squares(name: str, suffix: str) -> None:
     """The same as a batch over the regressor's columns, each step's rows weighted by forgetting^age."""
     arm = ARMS[name]
     n = len(arm.coordinates)
-    noise = Noise(tuple(0.1 + 0.05 * k for k in range(n)), (), (), (0.2,) * n, 1.0, 1.0)
+    noise = Noise(
+        tuple(0.1 + 0.05 * k for k in range(n)), (1.0,) * n, (0.2,) * n, (1.0,) * n, (1.0,) * n, 1.0, 1.0
+    )
     given = base_vector(model(name), standard_vector(model(name), np.random.default_rng(1)))
     names = [b.name for b in model(name).grouping.base]
     identified = dict(zip(names, given, strict=True)) if suffix == "_identified" else {}
