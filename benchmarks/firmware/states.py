@@ -79,9 +79,13 @@ class Inputs:
 
 
 def monitor_state(size: int, rng: np.random.Generator) -> Array:
-    """What a monitor may have accumulated of m parameters: 3 m elements, then half of a matrix."""
+    """What a monitor may have accumulated of m parameters in 8 m steps: 3 m elements, then half of a matrix.
+
+    Of as few steps as there are parameters the matrix may be near a singular one, and single precision solves
+    with it to as much less.
+    """
     m = next(m for m in range(size) if 3 * m + m * (m + 1) // 2 == size)
-    root = rng.uniform(-1, 1, (2 * m, m))
+    root = rng.uniform(-1, 1, (8 * m, m))
     return np.concatenate([rng.uniform(-1, 1, 3 * m), (root.T @ root)[np.tril_indices(m)]])
 
 
