@@ -5,6 +5,8 @@ from functools import cache
 
 import numpy as np
 import pytest
+from firmware.states import monitor_state
+from numpy.random import default_rng
 from witness.arms import ARMS, Emitted, build, random_arm, shipped
 from witness.bodies import random_bodies
 from witness.compare import agree
@@ -46,7 +48,11 @@ class Case:
         known |= {"dq_r": self.dq[::-1], "ddq_r": self.ddq[::-1]}
         known |= {"sin_q": np.sin(self.q), "cos_q": np.cos(self.q)}
         known |= {"parameters": self.standard if suffix else self.base}
-        known |= {"dt": np.array([1e-3]), "gain": np.full_like(self.dq, 20.0), "state": 0.1 * self.dq}
+        known |= {"dt": np.array([1e-3]), "gain": np.full_like(self.dq, 20.0), "forgetting": np.array([0.99])}
+        for a in function.arguments:
+            if a.name.endswith("state"):
+                monitored = a.length == "N_MONITOR_STATES"
+                known[a.name] = monitor_state(a.size, default_rng(3)) if monitored else 0.1 * self.dq
         return {a.name: known[a.name] for a in function.arguments if a.name != "geometry"}
 
 
