@@ -21,7 +21,7 @@ from modelgen.effects.base import (
     Swing,
     Values,
 )
-from modelgen.effects.catalogue import CATALOGUE
+from modelgen.effects.catalogue import CATALOGUE, unit_text
 from modelgen.effects.variables import (
     BodyVariables,
     InputVariables,
@@ -144,7 +144,9 @@ def resolved(effect: Definition, use: EffectUse) -> dict[str, float]:
     for p in effect.nonlinear:
         given = {p.name: p.default, **use.values}[p.name]
         if given is None:
-            raise InputError(f"{use.name} needs a value for {p.name} [{p.unit}]: {p.text}", use.where)
+            raise InputError(
+                f"{use.name} needs a value for {p.name} [{unit_text(type(effect), p)}]: {p.text}", use.where
+            )
         values[p.name] = given
     return values
 

@@ -81,12 +81,12 @@ def effect_texts() -> dict[str, str]:
         found[name] = f"{effect.text}. {effect.reference}"
         for parameter in effect.accepted():
             default = "" if parameter.default is None else f"; default {parameter.default:g}"
-            found[f"{name}.{parameter.name}"] = f"{parameter.text} [{_unit(effect, parameter)}]{default}"
+            found[f"{name}.{parameter.name}"] = f"{parameter.text} [{unit_text(effect, parameter)}]{default}"
     return found
 
 
-def _unit(effect: type[Definition], parameter: Parameter) -> str:
-    """In words that hold for every joint and drive."""
+def unit_text(effect: type[Definition], parameter: Parameter) -> str:
+    """A parameter's unit in words that hold for every joint and drive."""
     turning, sliding = (parameter.unit.format(f=f, x=x) for f, x in (("N m", "rad"), ("N", "m")))
     if turning == sliding:
         return turning

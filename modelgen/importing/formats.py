@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 from modelgen.errors import InputError
@@ -20,6 +21,10 @@ def read_robot(path: Path, rounding: Rounding) -> Robot:
 
     Raises InputError, with the line, at the first mistake.
     """
+    return replace(_read(path, rounding), file=str(path))
+
+
+def _read(path: Path, rounding: Rounding) -> Robot:
     if path.suffix.lower() == ".xacro":
         raise InputError(f"{path}: expand it first: xacro {path.name} > {path.stem.split('.')[0]}.urdf")
     if path.suffix.lower() in TABLES:

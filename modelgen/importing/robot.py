@@ -11,6 +11,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from modelgen.errors import Location
 from modelgen.numeric import Array
 
 MOVING = ("revolute", "prismatic")  # what a joint of one degree of freedom may be
@@ -119,7 +120,8 @@ class Closure:
 class Robot:
     """A source that has been read: a tree of links that stands on `root`.
 
-    tools: links that the source has for their frames alone. remarks: what the user must know.
+    tools: links that the source has for their frames alone. remarks: what the user must know. file: its name
+    as the user gave it.
     """
 
     name: str
@@ -131,3 +133,8 @@ class Robot:
     closures: tuple[Closure, ...] = ()
     remarks: tuple[str, ...] = ()
     inertials: bool = True  # whether the format has any
+    file: str = ""
+
+    def where(self, line: int) -> Location | None:
+        """The place of a line in the file; None where either is not known."""
+        return Location(self.file, line, 1) if self.file and line else None

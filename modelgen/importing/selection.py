@@ -96,11 +96,15 @@ class _Selection:
             elif joint is not None:
                 frame = frame @ self._hold(joint)
             name = self.root if joint is None else joint.child
-            body = self.robot.links[name].body
+            link = self.robot.links[name]
+            body = link.body
             branches = self.below.get(name, [])
             links[carrier].append(Carried(name, frame, not branches))
             if body is not None and body.mass < 0:
-                raise InputError(f"link {name}: found a mass of {body.mass:g} kg, expected 0 or more")
+                raise InputError(
+                    f"link {name}: found a mass of {body.mass:g} kg, expected 0 or more",
+                    self.robot.where(link.line),
+                )
             if body is not None and carrier is not None:
                 bodies[carrier].append(moved_body(body, frame))
                 if doubt(body):
@@ -190,7 +194,8 @@ class _Selection:
             if joint.kind not in MOVING:
                 raise InputError(
                     f"joint {joint.name} is {joint.kind}: only joints of one degree of freedom are imported"
-                    f"; --root {joint.child} takes what stands on it"
+                    f"; --root {joint.child} takes what stands on it",
+                    self.robot.where(joint.line),
                 )
         names = {joint.name for joint in wanted}
         for joint in wanted:
@@ -199,7 +204,8 @@ class _Selection:
                 both = f", or both, --lock {master}=0" if master in self.by_name else ""
                 raise InputError(
                     f"joint {joint.name} mimics {master}: coupled coordinates are not described"
-                    f"; hold it, --lock {joint.name}=0{both}"
+                    f"; hold it, --lock {joint.name}=0{both}",
+                    self.robot.where(joint.line),
                 )
         for closure in self.robot.closures:
             involved = [name for name in closure.joints if name in names]
@@ -208,7 +214,7 @@ class _Selection:
                 self.pairs.append(pair)
                 continue
             if involved or self._moving_links(closure.links, names):
-                raise InputError(closure.text)
+                raise InputError(closure.text, self.robot.where(closure.line))
         return names
 
     def _moving_links(self, links: tuple[str, ...], names: set[str]) -> bool:

@@ -199,4 +199,21 @@ def _root(root: Element, links: dict[str, SourceLink], joints: tuple[SourceJoint
             f"found {len(free)} links that no joint carries, expected one: {', '.join(free[:6])}"
             f"{', …' if len(free) > 6 else ''}"
         )
+    _stands(root, free[0], joints)
     return free[0]
+
+
+def _stands(root: Element, base: str, joints: tuple[SourceJoint, ...]) -> None:
+    """A joint that does not stand on the base, where each link is carried once, is part of a loop."""
+    above = {joint.child: joint for joint in joints}
+    standing = {base}
+    for element, joint in zip(root.all("joint"), joints, strict=True):
+        way: list[SourceJoint] = []
+        link = joint.child
+        while link not in standing:
+            if any(passed.child == link for passed in way):
+                loop = ", ".join(sorted(j.name for j in way[[j.child for j in way].index(link) :]))
+                raise element.error(f"the joints {loop} carry each other: loops are not imported")
+            way.append(above[link])
+            link = above[link].parent
+        standing |= {passed.child for passed in way}

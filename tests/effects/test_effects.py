@@ -413,7 +413,10 @@ def test_on_a_real_arm_a_new_effect_leaves_the_rest_alone() -> None:
     ("use", "message"),
     [
         (EffectUse("viscos_friction"), "did you mean viscous_friction"),
-        (EffectUse("stribeck_friction"), "stribeck_friction needs a value for velocity"),
+        (
+            EffectUse("stribeck_friction"),
+            r"stribeck_friction needs a value for velocity \[rad/s at the motor",
+        ),
         (EffectUse("stribeck_friction", {"velocity": -1.0}), "velocity is -1.0, expected"),
         (
             EffectUse("coulomb_friction", {"magnitud": 1.0}),

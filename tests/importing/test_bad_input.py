@@ -37,20 +37,32 @@ BAD = {
     ),
     "floating": (
         links("a", "b") + JOINT.format("j", "floating", "a", "b", "0 0 1", ""),
-        "joint j is floating",
+        r":4:\d+: joint j is floating",
     ),
     "planar": (links("a", "b") + JOINT.format("j", "planar", "a", "b", "0 0 1", ""), "joint j is planar"),
     "mimic": (
         links("a", "b", "c")
         + JOINT.format("j", "revolute", "a", "b", "0 0 1", "")
         + JOINT.format("k", "revolute", "b", "c", "0 0 1", '<mimic joint="j"/>'),
-        "joint k mimics j",
+        r":6:\d+: joint k mimics j",
     ),
     "loop": (
         links("a", "b", "c")
         + JOINT.format("j", "revolute", "a", "c", "0 0 1", "")
         + JOINT.format("k", "revolute", "b", "c", "0 0 1", ""),
         "link c is carried by the joints j and k",
+    ),
+    "loop beside the arm": (
+        links("a", "b", "c", "d")
+        + JOINT.format("j", "revolute", "a", "b", "0 0 1", "")
+        + JOINT.format("k", "revolute", "c", "d", "0 0 1", "")
+        + JOINT.format("l", "revolute", "d", "c", "0 0 1", ""),
+        "the joints k, l carry each other",
+    ),
+    "negative mass": (
+        links("a", "b").replace('mass value="1"', 'mass value="-1"')
+        + JOINT.format("j", "revolute", "a", "b", "0 0 1", ""),
+        r":2:\d+: link a: found a mass of -1 kg",
     ),
     "xacro": ('<xacro:arm xmlns:xacro="x"/>', "xacro FILE > robot.urdf"),
     "a word for a number": (

@@ -34,11 +34,12 @@ def closures_of(root: Element, defaults: Defaults, levers: Collection[str]) -> I
             name = tendon.attributes.get("name", f"of line {tendon.line}")
             if name in levers or (name not in pulled and not any(_acts(tendon, which) for which in _ACTS)):
                 continue
-            text = f"line {tendon.line}: tendon {name} acts on several joints, which is not described"
+            text = f"tendon {name} acts on several joints, which is not described"
             yield Closure(
                 f"{text}; hold them (--lock), or take it out",
                 joints=tuple(part.text("joint") for part in tendon.all("joint")),
                 links=tuple(part.text("site") for part in tendon.all("site")),
+                line=tendon.line,
                 pair=None if name in pulled else _pair(tendon),
             )
 
@@ -63,13 +64,11 @@ def _pair(tendon: Element) -> SourcePair | None:
 
 def _equality(element: Element, given: dict[str, str]) -> Closure:
     name = given.get("name", "")
-    text = (
-        f"line {element.line}: equality {name or element.tag} closes a loop or couples joints, which is not "
-    )
+    text = f"equality {name or element.tag} closes a loop or couples joints, which is not "
     joints = tuple(given[key] for key in ("joint1", "joint2") if key in given)
     links = tuple(given[key] for key in ("body1", "body2", "site1", "site2") if key in given)
     hint = f"; hold them, --lock {joints[0]}=0" if joints else "; open it: take it out, or hold its joints"
-    return Closure(f"{text}described{hint}", joints, links)
+    return Closure(f"{text}described{hint}", joints, links, element.line)
 
 
 def _pulled(root: Element, defaults: Defaults) -> set[str]:
