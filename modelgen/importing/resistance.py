@@ -57,6 +57,7 @@ def drive_of(joint: SourceJoint) -> Mapping[str, Entry]:
     coordinate of a lever is counted from the length zero.
     """
     lever = joint.lever
+    limits = {} if joint.most is None else {"current": joint.most}
     if lever is not None:
         return {
             "type": LeveredDrive.name,
@@ -67,7 +68,8 @@ def drive_of(joint: SourceJoint) -> Mapping[str, Entry]:
             "rev": float(lever.rev),
             "offset": lever.offset,
             "torque_constant": joint.gain,
+            **limits,
         }
     if joint.reduction == 1.0 and joint.gain == 1.0:
         return {}
-    return {"type": DirectDrive.name, "ratio": joint.reduction, "torque_constant": joint.gain}
+    return {"type": DirectDrive.name, "ratio": joint.reduction, "torque_constant": joint.gain, **limits}

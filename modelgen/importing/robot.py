@@ -68,8 +68,8 @@ class SourceJoint:
     drawn pose [rad, m]. properties: what the joint resists with and stores, at the joint, by the names
     that the catalogue of effects gives them (`Traits.sources`); with a lever damping, friction and armature
     are those along the actuator. reduction: motor coordinate per joint coordinate, or per length of the
-    lever's actuator. gain: force at the motor coordinate per input. alone: what acts by itself at the motor
-    coordinate, each by the names of `Definition.simulated`.
+    lever's actuator. gain: force at the motor coordinate per input. most: largest input. alone: what acts by
+    itself at the motor coordinate, each by the names of `Definition.simulated`.
     """
 
     name: str
@@ -86,6 +86,7 @@ class SourceJoint:
     properties: Mapping[str, float] = field(default_factory=dict)
     reduction: float = 1.0
     gain: float = 1.0
+    most: float | None = None
     alone: tuple[Mapping[str, float], ...] = ()
     lever: SourceLever | None = None
     mimic: Mimic | None = None

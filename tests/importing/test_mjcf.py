@@ -103,6 +103,24 @@ def test_what_actuators_do_by_themselves_becomes_effects(
     assert [remark in text for text in robot.remarks] == ([True] if remark else [])
 
 
+@pytest.mark.parametrize(
+    ("actuator", "current", "effort"),
+    [
+        ('<motor joint="a" gear="50" ctrlrange="-2 2"/>', 2.0, None),
+        ('<general joint="a" gear="50" gainprm="0.1" ctrlrange="-3 3"/>', 3.0, None),
+        ('<general joint="a" gear="50" gainprm="0.1" ctrlrange="-3 3" ctrllimited="false"/>', None, None),
+        ('<position joint="a" gear="50" kp="9" ctrlrange="-1 1"/>', None, None),
+        ('<motor joint="a" ctrlrange="-80 80"/>', None, 80.0),
+    ],
+)
+def test_the_range_of_an_input_limits_the_current(
+    actuator: str, current: float | None, effort: float | None, tmp_path: Path
+) -> None:
+    text = bodies(f'<joint name="a"/>{MASS}') + f"<actuator>{actuator}</actuator>"
+    (joint,) = mg.import_robot(saved(tmp_path, f"<mujoco>{text}</mujoco>")).arm.joints
+    assert (joint.drive.limits.current, joint.limits.effort) == (current, effort)
+
+
 def test_damping_of_more_terms_than_there_are_is_refused(tmp_path: Path) -> None:
     text = bodies(f'<joint name="a" damping="1 2 3 4"/>{MASS}')
     with pytest.raises(mg.InputError, match="found 4 values, expected 3 at most"):

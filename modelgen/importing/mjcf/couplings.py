@@ -143,9 +143,29 @@ def _driven(joint: SourceJoint, actuator: Element, gear: float) -> SourceJoint:
         effort = float(np.abs(actuator.vector("forcerange", 2)).max() * abs(gear)) or None
     alone = [own for own in (_push(actuator), _lag(actuator)) if own]
     gain = actuator.numbers("gainprm")[0] if actuator.tag == "general" and _fixed(actuator) else 1.0
+    most = _most(actuator)
+    if effort is None and gear == gain == 1.0 and joint.lever is None:
+        effort = most  # input and effort are the same
     return replace(
-        joint, properties=properties, reduction=gear, effort=effort, gain=gain or 1.0, alone=tuple(alone)
+        joint,
+        properties=properties,
+        reduction=gear,
+        effort=effort,
+        gain=gain or 1.0,
+        most=most,
+        alone=tuple(alone),
     )
+
+
+def _most(actuator: Element) -> float | None:
+    """The largest input that is a current or an effort; None where it is a set point, or has no limits."""
+    feedback = actuator.attributes.get("biastype", "none") != "none" and not _push(actuator)
+    given = actuator.attributes
+    if "ctrlrange" not in given or given.get("ctrllimited") == "false" or feedback:
+        return None
+    if actuator.tag != "motor" and not (actuator.tag == "general" and _fixed(actuator)):
+        return None
+    return float(np.abs(actuator.vector("ctrlrange", 2)).max()) or None
 
 
 def _push(actuator: Element) -> dict[str, float]:
