@@ -204,7 +204,7 @@ def test_the_operations_are_those_of_the_text(name: str) -> None:
 
 
 def test_the_count_of_operations_sees_what_it_should() -> None:
-    text = """int a_f(const r x[], r out[]) {
+    text = """a_status_t a_f(const r x[], r out[]) {
         const r t0 = -x[0] * A_C(-2.0) - x[1] / -A_SIN(x[0]);
         out[0] = a_sign(t0);
         return A_OK; }"""
@@ -309,6 +309,7 @@ def test_one_file_for_each_function() -> None:
         "include/planar.h",
         "src/planar_private.h",
         "src/planar_check_parameters.c",
+        "src/planar_onto_strokes.c",
         "src/planar_model.c",
         "src/planar_sincos.c",
         *(f"src/planar_{name}.c" for name in FUNCTIONS),

@@ -52,7 +52,9 @@ def test_the_description_differs_from_the_shipped_one_where_it_says(checkout: Pa
             assert drive.limits.current is not None
             drive = replace(drive, limits=replace(drive.limits, current=None))
         joints.append(replace(joint, effects=effects, drive=drive))
-    assert replace(own, name=shipped.name, source=shipped.source, joints=tuple(joints)) == shipped
+    assert own.monitor == ()
+    same = {"name": shipped.name, "source": shipped.source, "monitor": shipped.monitor}
+    assert replace(own, joints=tuple(joints), **same) == shipped
 
 
 def test_wrong_parameters_are_wrong_by_up_to_a_tenth_and_physical(arm: ControlledArm) -> None:
