@@ -14,6 +14,7 @@ from modelgen.figures import COLOURS, figure, svg
 from modelgen.identification import Identification, Validation
 from modelgen.identification.without_drives import Alternative
 from modelgen.numeric import Array
+from modelgen.report.arm_drawing import arm_drawing
 from modelgen.report.diagnosis_figures import inline
 from modelgen.resources import templates_folder
 
@@ -65,6 +66,7 @@ def page(
     test = found.test
     text: str = environment.get_template("report/identification.html.j2").render(
         arm=found.arm.name,
+        arm_drawing=arm_drawing(found.arm),
         verdict=words,
         method=found.method,
         condition=f"{found.solution.condition:.4g}",

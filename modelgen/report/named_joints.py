@@ -5,9 +5,7 @@ from __future__ import annotations
 from markupsafe import Markup
 
 from modelgen.diagnosis.result import Diagnosis
-from modelgen.drawing import framed, page
-
-_HEIGHT = 560  # pixels
+from modelgen.report.arm_drawing import arm_drawing
 
 
 def named_joints(d: Diagnosis) -> Markup:
@@ -20,4 +18,4 @@ def named_joints(d: Diagnosis) -> Markup:
     if not said:
         return Markup()
     marks = {name: ", ".join(texts) for name, texts in said.items()}
-    return framed(page(d.arm, marks=marks), f"the arm {d.arm.name}", _HEIGHT)
+    return arm_drawing(d.arm, marks)

@@ -112,4 +112,6 @@ def test_a_mapping_that_declares_a_duty_cycle_is_told_what_that_means(tmp_path: 
     result = CliRunner().invoke(app, [*call, "--out", str(tmp_path / "out")])
     assert result.exit_code == 0, result.output
     assert "back-EMF sits in the viscous friction" in result.output
-    assert "back-EMF" in (tmp_path / "out" / "report.html").read_text(encoding="utf-8")
+    page = (tmp_path / "out" / "report.html").read_text(encoding="utf-8")
+    assert "back-EMF" in page
+    assert '<iframe title="the arm two" srcdoc="' in page
