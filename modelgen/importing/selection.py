@@ -111,7 +111,7 @@ class _Selection:
                     self.remarks.append(f"link {name}: {doubt(body)}; kept as given")
             stack += [(branch, frame @ branch.pose, carrier) for branch in reversed(branches)]
         if not found:
-            raise InputError("no joint is left that moves, expected at least one")
+            raise InputError("no joint is left that moves, expected at least one", self.robot.where(1))
         return Mechanism(
             joints=tuple(
                 MovingJoint(
@@ -144,12 +144,17 @@ class _Selection:
 
     def _held(self, lock: Mapping[str, float]) -> dict[str, float]:
         """Coordinates of the joints that --lock holds, and of those that mimic them."""
-        for name in lock:
+        for name, at in lock.items():
             if name not in self.by_name:
                 raise InputError(f"--lock: there is no joint '{name}'{_near(name, self.by_name)}")
             joint = self.by_name[name]
             if joint.kind not in MOVING:
                 raise InputError(f"--lock: joint {name} is {joint.kind}, expected one degree of freedom")
+            if joint.position and not joint.position[0] <= at <= joint.position[1]:
+                low, high = joint.position
+                self.remarks.append(
+                    f"joint {name}: locked at {at:g}, outside its range {low:g} to {high:g}; kept as given"
+                )
         held = dict(lock)
         for joint in self.robot.joints:
             value = self._mimicked(joint, held)

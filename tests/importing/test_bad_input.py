@@ -140,6 +140,13 @@ def test_the_command_writes_what_the_function_gives_and_leaves_what_is_there(tmp
     assert "exists and is left as it is" in again.stderr
 
 
+def test_a_joint_that_is_locked_outside_its_range_is_remarked_on() -> None:
+    source = Path(__file__).parent / "models" / "ur10e.urdf"
+    robot = mg.import_robot(source, lock={"elbow_joint": 9.0})
+    assert [r for r in robot.remarks if "locked at 9, outside its range -3.14159 to 3.14159" in r]
+    assert not [r for r in mg.import_robot(source, lock={"elbow_joint": 1.0}).remarks if "locked" in r]
+
+
 def test_a_link_that_does_not_exist_is_asked_about() -> None:
     source = Path(__file__).parent / "models" / "ur10e.urdf"
     with pytest.raises(mg.InputError, match="did you mean 'wrist_1_link'"):
