@@ -114,10 +114,10 @@ class DatasetThresholds(Group):
         "conventions are half a period apart: more than three standard deviations",
     )
     instant_tolerance: float = entry(
-        0.2,
+        0.25,
         "sampling periods",
         "A convention of when efforts were read is what the data say to this, or to three deviations.",
-        _CHOICE,
+        "half of what lies between two conventions; dry friction shifts what is found by up to 0.2",
     )
     max_noise_share: float = entry(
         1e-3,

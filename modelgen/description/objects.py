@@ -212,5 +212,6 @@ class Arm:
         return tuple(done)
 
     def without_effects(self) -> Arm:
-        """The arm with no effect of its own or of its joints."""
-        return replace(self, joints=tuple(replace(j, effects=()) for j in self.joints), effects=())
+        """The arm with no effect of its own or of its joints, and nothing monitored, which may be theirs."""
+        bare = tuple(replace(j, effects=()) for j in self.joints)
+        return replace(self, joints=bare, effects=(), monitor=())
