@@ -84,8 +84,10 @@ class Dynamics:
         matrix = self.mass_matrix(dq)
         links = e.link_values(self.values)
         found: list[tuple[list[Expr], list[Expr]]] = []
+        motions = []
         for frames in (e.frames, e.frames_factored):
-            efforts = joint_efforts(frames, link_motions(frames, rates), links)
+            motions.append((frames, link_motions(frames, rates)))
+            efforts = joint_efforts(*motions[-1], links)
             right = [
                 i * gain - (effort + extra)
                 for i, gain, effort, extra in zip(ideal, self.gains(), efforts, added, strict=True)
@@ -96,9 +98,8 @@ class Dynamics:
         if e.n >= _ARTICULATED_FROM and apart:
             at_joints = [i * gain - extra for i, gain, extra in zip(ideal, self.gains(), added, strict=True)]
             drives = [row[k] for k, row in enumerate(masses)]
-            for frames in (e.frames, e.frames_factored):
-                motions = link_motions(frames, rates)
-                found.append(accelerations(frames, motions, links, at_joints, drives))
+            for frames, moving in motions:
+                found.append(accelerations(frames, moving, links, at_joints, drives))
         return min(found, key=lambda pair: cost(e.graph, [*pair[0], *pair[1]]))
 
     def loads(self) -> list[Expr]:

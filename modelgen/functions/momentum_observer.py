@@ -14,6 +14,7 @@ from modelgen.geometry import Frames
 from modelgen.graph import Expr
 from modelgen.graph.differentiate import tangents
 from modelgen.graph.live import cost
+from modelgen.graph.vectors import dot
 from modelgen.model.dynamics import joint_efforts
 from modelgen.model.effect_forces import EffectForces
 from modelgen.model.momentum import link_momenta
@@ -66,7 +67,7 @@ def momentum_and_forces(dynamics: Dynamics) -> tuple[list[Expr], list[Expr]]:
     links = e.link_values(dynamics.values)
     effects = EffectForces(e, Rates(dq, zeros), dynamics.values)
     masses = EffectForces(e, Rates(zeros, zeros), dynamics.values).masses()
-    own = [_dot(row, dq, e.graph.zero) for row in masses]
+    own = [dot(row, dq) for row in masses]
     along = {("q", k): x for k, x in enumerate(dq)}
     along |= {("sin_q", k): e.graph.input("cos_q", k) * x for k, x in enumerate(dq)}
     along |= {("cos_q", k): -(e.graph.input("sin_q", k) * x) for k, x in enumerate(dq)}
@@ -88,9 +89,3 @@ def momentum_and_forces(dynamics: Dynamics) -> tuple[list[Expr], list[Expr]]:
 
     forms = [form(frames) for frames in (e.frames, e.frames_factored)]
     return min(forms, key=lambda found: cost(e.graph, [*found[0], *found[1]]))
-
-
-def _dot(a: Sequence[Expr], b: Sequence[Expr], total: Expr) -> Expr:
-    for x, y in zip(a, b, strict=True):
-        total = total + x * y
-    return total

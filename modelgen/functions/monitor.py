@@ -20,6 +20,7 @@ from modelgen.graph.evaluate import evaluate
 from modelgen.graph.graph import CALL
 from modelgen.graph.lowering import reachable
 from modelgen.graph.substitute import substituted
+from modelgen.graph.vectors import dot
 
 SHORTEST_MEMORY = 0.5  # least forgetting factor: a memory of two steps
 SINGULAR = 1e-4  # share of its information that a parameter must have for itself to be estimated
@@ -113,11 +114,11 @@ def monitor(
     weights = _weights(a, model, dq)
     weighted = [[w * x for w, x in zip(weights, column, strict=True)] for column in columns]
     information = {
-        (i, j): forgetting * state.information(i, j) + _dot(weighted[i], columns[j], graph.zero)
+        (i, j): forgetting * state.information(i, j) + dot(weighted[i], columns[j])
         for i in range(m)
         for j in range(i + 1)
     }
-    vector = [forgetting * state.vector(i) + _dot(weighted[i], errors, graph.zero) for i in range(m)]
+    vector = [forgetting * state.vector(i) + dot(weighted[i], errors) for i in range(m)]
     changes, variances = _solved(graph, information, vector)
     estimates = [_value(graph, one, suffix, given) for one in names]
     estimates = [x + d * scale for x, d, scale in zip(estimates, changes, scales, strict=True)]
@@ -268,12 +269,6 @@ def _solved(
     for i in range(m):
         column = {i: graph.one}  # of the inverse of the lower factor
         for k in range(i + 1, m):
-            column[k] = -_dot([lower[k, j] for j in column], list(column.values()), graph.zero)
-        variances.append(_dot([c * c for c in column.values()], inverses[i:], graph.zero))
+            column[k] = -dot([lower[k, j] for j in column], list(column.values()))
+        variances.append(dot([c * c for c in column.values()], inverses[i:]))
     return x, variances
-
-
-def _dot(a: Sequence[Expr], b: Sequence[Expr], total: Expr) -> Expr:
-    for x, y in zip(a, b, strict=True):
-        total = total + x * y
-    return total

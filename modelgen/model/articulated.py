@@ -21,7 +21,7 @@ from modelgen.graph.vectors import Matrix, Vector, add, cross, dot, scaled, time
 from modelgen.model.composite import VANISHED
 from modelgen.model.dynamics import Parameters
 from modelgen.model.motion import LinkMotion
-from modelgen.model.wrench import Wrench, wrench
+from modelgen.model.wrench import Wrench, carried_wrench, wrench
 
 _Screw: TypeAlias = tuple[Vector, Vector]  # moment and force
 _PLANES = ((0, 1, 2), (1, 2, 0), (0, 1, 2))  # of the turns by theta, alpha and gamma: the axis comes last
@@ -182,8 +182,7 @@ def _rigid(p: Sequence[Expr], zero: Expr) -> _Inertia:
 
 def _joined(bias: Wrench, frame: Frame, more: Wrench) -> Wrench:
     """A link's bias with that of a body that it carries."""
-    back = frame.to_antecedent(more[0])
-    turned = add(frame.to_antecedent(more[1]), cross(frame.origin, back))
+    back, turned = carried_wrench(frame, *more)
     return add(bias[0], back), add(bias[1], turned)
 
 

@@ -6,8 +6,9 @@ from collections.abc import Sequence
 
 from modelgen.geometry import Frame, Frames
 from modelgen.graph import Expr
-from modelgen.graph.vectors import Vector, add, cross
+from modelgen.graph.vectors import Vector
 from modelgen.model.dynamics import Parameters
+from modelgen.model.wrench import carried_wrench
 
 # Share of a diagonal element that a pivot must exceed.
 VANISHED = 1e-9
@@ -51,8 +52,7 @@ def _fill(frames: Frames, i: int, body: Body, matrix: list[list[Expr]]) -> None:
         if frame.coordinate is not None:
             effort = force[2] if frame.prismatic else moment[2]
             matrix[own][frame.coordinate] = matrix[frame.coordinate][own] = effort
-        force = frame.to_antecedent(force)
-        moment = add(frame.to_antecedent(moment), cross(frame.origin, force))
+        force, moment = carried_wrench(frame, force, moment)
         current = frame.antecedent
 
 

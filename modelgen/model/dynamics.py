@@ -6,9 +6,9 @@ from collections.abc import Sequence
 
 from modelgen.geometry import Frames
 from modelgen.graph import Expr
-from modelgen.graph.vectors import Vector, add, cross
+from modelgen.graph.vectors import Vector, add
 from modelgen.model.motion import LinkMotion
-from modelgen.model.wrench import Wrench, wrench
+from modelgen.model.wrench import Wrench, carried_wrench, wrench
 
 Parameters = Sequence[Sequence[Expr]]  # link by link: 10, or 14 in a fluid
 
@@ -36,7 +36,6 @@ def wrenches(frames: Frames, motions: Sequence[LinkMotion], parameters: Paramete
             force, moment = total[i]
             f, n = total[frame.antecedent]
             with frames.noted(i, "what it passes on"):
-                back = frame.to_antecedent(force)
-                turned = add(frame.to_antecedent(moment), cross(frame.origin, back))
+                back, turned = carried_wrench(frame, force, moment)
                 total[frame.antecedent] = add(f, back), add(n, turned)
     return [total[i] for i in range(len(motions))]

@@ -9,6 +9,7 @@ from modelgen.graph import Expr
 from modelgen.graph.vectors import Vector, add, cross
 from modelgen.model.dynamics import Parameters
 from modelgen.model.motion import Rates, link_motions, origin_velocities
+from modelgen.model.wrench import carried_wrench
 
 
 def link_momenta(frames: Frames, rates: Rates, parameters: Parameters) -> tuple[list[Expr], list[Expr]]:
@@ -38,8 +39,7 @@ def link_momenta(frames: Frames, rates: Rates, parameters: Parameters) -> tuple[
                 slopes[frame.coordinate] = turning[0] * w[1] - turning[1] * w[0] + (h[0] * v[1] - h[1] * v[0])
         if frame.antecedent is not None:
             with frames.noted(i, "momentum of it and all beyond"):
-                back = frame.to_antecedent(h)
-                turned = add(frame.to_antecedent(turning), cross(frame.origin, back))
+                back, turned = carried_wrench(frame, h, turning)
                 own = momenta[frame.antecedent]
                 momenta[frame.antecedent] = add(own[0], back), add(own[1], turned)
     return values, slopes

@@ -10,11 +10,18 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
+from modelgen.geometry import Frame
 from modelgen.graph import Expr
 from modelgen.graph.vectors import Vector, add, cross, times
 from modelgen.model.motion import LinkMotion
 
 Wrench = tuple[Vector, Vector]  # force, moment
+
+
+def carried_wrench(frame: Frame, force: Vector, moment: Vector) -> Wrench:
+    """A wrench, or another pair that changes its point like one, at the antecedent's origin in its axes."""
+    back = frame.to_antecedent(force)
+    return back, add(frame.to_antecedent(moment), cross(frame.origin, back))
 
 
 def wrench(motion: LinkMotion, p: Sequence[Expr], density: float) -> Wrench:
