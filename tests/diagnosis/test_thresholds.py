@@ -3,7 +3,6 @@
 The function is called by itself, on equations of a made-up arm or on some of which all is known.
 """
 
-from collections.abc import Callable
 from dataclasses import replace
 from functools import cache
 from itertools import islice
@@ -12,10 +11,11 @@ from typing import Any
 
 import numpy as np
 import pytest
-from diagnosis_support import ARM, BARE, UNUSED, coarse, equations_of, made, offset, record
+from diagnosis_support import ARM, BARE, UNUSED, coarse, equations_of
 from numpy.random import default_rng
+from threshold_decisions import CASES as DECISIONS
+from threshold_support import Seen, band, known, law, logs, real, refusal, valued, with_columns
 
-from modelgen.dataset import Record
 from modelgen.description import Inertial
 from modelgen.diagnosis.adequacy import lack_of_fit
 from modelgen.diagnosis.adequacy.checks import explains
@@ -27,7 +27,7 @@ from modelgen.diagnosis.candidates.candidate import Candidate
 from modelgen.diagnosis.candidates.fitted import sensible
 from modelgen.diagnosis.candidates.periodogram import waves
 from modelgen.diagnosis.decision import _counted
-from modelgen.diagnosis.equations import Band, Equations, Rows, bands, check_efforts, settings_for, study_of
+from modelgen.diagnosis.equations import Rows, bands, check_efforts, settings_for, study_of
 from modelgen.diagnosis.equations.checks import check_excitation, check_motion
 from modelgen.diagnosis.equations.position_errors import counts, repeating_errors, rounded
 from modelgen.diagnosis.equations.prior import told
@@ -38,69 +38,14 @@ from modelgen.diagnosis.experiment.bench_tests import _motions
 from modelgen.diagnosis.experiment.discrimination import hypothesis
 from modelgen.diagnosis.extended.test_errors import compared
 from modelgen.diagnosis.options import Options, Thresholds
+from modelgen.diagnosis.options.thresholds import USUAL
 from modelgen.diagnosis.selection.cause import Cause, Selection
 from modelgen.diagnosis.selection.compliance import member
 from modelgen.diagnosis.selection.rivals import ambiguity_set, lesser_rivals, needed_behind
 from modelgen.diagnosis.selection.stepwise import least_evidence, threshold
 from modelgen.diagnosis.validation.gates import Gates, Judgement
-from modelgen.errors import InputError
 from modelgen.functions import build_model
-from modelgen.numeric import Array
 from modelgen.thresholds import Value
-
-Seen = Callable[[Thresholds], Any]
-USUAL = Thresholds()
-
-
-def refusal(act: Callable[[], Any]) -> Any:
-    """What it returns, or the sentence by which it refuses."""
-    try:
-        return act()
-    except InputError as error:
-        return str(error)
-
-
-@cache
-def logs(*, fine: bool = True) -> tuple[Record, ...]:
-    """Two training records and a test record of the bench, with Coulomb friction's columns and no more."""
-    found = tuple(record(None, 1, 0.0, k, f"r{k}") for k in range(3))
-    return found if fine else tuple(coarse(r) for r in found)
-
-
-@cache
-def band(*, fine: bool = True) -> Band:
-    return next(bands(study_of(ARM, logs(fine=fine), Options(cutoff=18.0))))
-
-
-def real(limits: Thresholds, *, fine: bool = True) -> Equations:
-    """Equations of the bench."""
-    return replace(band(fine=fine).equations, thresholds=limits)
-
-
-def known(limits: Thresholds, force: Any = offset, seed: int = 0, *, repeat: bool = True) -> Equations:
-    """Equations of one joint of which all is known."""
-    rows, _, periods = made(force, seed)
-    return replace(equations_of(rows, periods if repeat else None), thresholds=limits)
-
-
-def law(equations: Equations, column: Any, effect: str = "friction_offset") -> FittedCandidate:
-    """A candidate with this column of the first column of the equations."""
-    columns = [column(r.columns[:, 0, 0])[:, None, None] for r in equations.rows]
-    gain = System(equations).gain(columns)
-    assert gain is not None
-    return FittedCandidate(Candidate(effect, 1), {}, columns, gain)
-
-
-def with_columns(equations: Equations, trial: FittedCandidate) -> list[Array]:
-    """Columns (M, n, p) of the equations with those of a candidate."""
-    pairs = zip(equations.rows, trial.columns, strict=True)
-    return [np.concatenate([r.columns, c], axis=2) for r, c in pairs]
-
-
-def valued(delta_bic: float, effect: str = "friction_offset", joint: int | None = 1, **more: Any) -> Any:
-    """A candidate of which no more than its evidence is asked."""
-    gain = SimpleNamespace(delta_bic=delta_bic, rank=more.pop("rank", 2), values=np.ones(1))
-    return FittedCandidate(Candidate(effect, joint), more, [], gain)  # type: ignore[arg-type]
 
 
 def still(limits: Thresholds, share: float, count: int = 400) -> Any:
@@ -126,7 +71,7 @@ def explaining(limits: Thresholds) -> Any:
     equations = known(limits)
     trial = law(equations, np.ones_like)
     system = System(equations, with_columns(equations, trial))
-    return explains(0, Selection([Cause(trial, 0.0, 0.0, 0.0)], system, ())).passed
+    return explains(0, Selection([Cause(trial, 0.0, 0.0, 0.0)], system, [])).passed
 
 
 def stepped(limits: Thresholds) -> Any:
@@ -209,7 +154,7 @@ def rippled(limits: Thresholds) -> Any:
 def soft(limits: Thresholds) -> Any:
     """Whether an elastic joint is sensible of which six tenths were found."""
     trial = valued(50.0, "joint_flexibility", stiffness=1e4, relaxation=1e-3)
-    trial = replace(trial, gain=SimpleNamespace(values=np.array([0.6]), delta_bic=50.0, rank=1))  # type: ignore[arg-type]
+    trial = replace(trial, gain=SimpleNamespace(values=np.array([0.6]), delta_bic=50.0, rank=1))
     return sensible(trial, real(limits))
 
 
@@ -428,53 +373,7 @@ CASES: dict[str, tuple[Value, Seen]] = {
     ),
     "extended.bootstrap_blocks": (40, interval),
     "extended.interval_quantiles": ((0.1, 0.9), interval),
-}
-
-# Without a case: they are read in the middle of a search or a selection.
-WITHOUT = {
-    "candidates.min_refined_delta_bic",
-    "candidates.wave_search_price",
-    "candidates.max_wave_deviation",
-    "validation.min_measured_share",
-    "validation.max_rise",
-    "validation.min_power_share",
-    "validation.position_error_factor",
-    "validation.min_instrument_deviations",
-    "validation.max_records_one_by_one",
-    "selection.min_whole_arm_share",
-    "selection.max_sign_deviations",
-    "selection.max_refit_growth",
-    "selection.max_causes",
-    "selection.max_causes_per_joint",
-    "adequacy.beside_delta_bic",
-    "adequacy.lone_cause_delta_bic",
-    "adequacy.detail_ratio",
-    "adequacy.slow_delta_bic",
-    "adequacy.as_good_delta_bic",
-    "adequacy.as_good_share",
-    "adequacy.behind_delta_bic",
-    "adequacy.further_cause_price",
-    "adequacy.min_explained_repeating",
-    "adequacy.max_left_in_part",
-    "adequacy.clear_part_ratio",
-    "adequacy.min_repeating_share",
-    "adequacy.rough_delta_bic",
-    "adequacy.max_alias_angle",
-    "adequacy.min_absorbed_share",
-    "adequacy.max_behind_refused",
-    "adequacy.max_free_form_ahead",
-    "adequacy.max_free_form_share",
-    "adequacy.min_free_form_beside",
-    "adequacy.min_claimed_deviations",
-    "adequacy.min_stable_probability",
-    "extended.min_inertia_share",
-    "extended.max_relative_deviation",
-    "extended.simulated_window",
-    "extended.max_windows",
-    "experiment.max_members",
-    "experiment.periods",
-    "experiment.limit_margin",
-    "experiment.min_left_share",
+    **DECISIONS,
 }
 
 
@@ -486,6 +385,5 @@ def test_a_threshold_of_the_diagnosis_acts(name: str) -> None:
     assert seen(USUAL.with_values({name: other})) != usual
 
 
-def test_a_new_threshold_gets_a_case() -> None:
-    names = {e.name for e in USUAL.entries() if not e.name.startswith("dataset.")}
-    assert names - set(CASES) == WITHOUT
+def test_every_threshold_of_the_diagnosis_has_a_case() -> None:
+    assert set(CASES) == {e.name for e in USUAL.entries() if not e.name.startswith("dataset.")}

@@ -1,0 +1,416 @@
+"""Thresholds that are read in the middle of a search, a selection or a plan, each with another value and a
+decision of that stage, called by itself. What a decision weighs stands in for equations where these would
+take long to have it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+from types import SimpleNamespace
+from typing import Any
+from unittest.mock import patch
+
+import numpy as np
+from diagnosis_support import ARM, BARE, PERIOD, UNUSED, equations_of, made, positions
+from numpy.random import default_rng
+from threshold_support import Seen, known, law, real, valued
+
+from modelgen.description import Inertial
+from modelgen.diagnosis.adequacy import stand_ins
+from modelgen.diagnosis.adequacy.checks import _stable, significant
+from modelgen.diagnosis.adequacy.distinguishable import aliases
+from modelgen.diagnosis.adequacy.dominance import dominance
+from modelgen.diagnosis.adequacy.free_form import free_forms
+from modelgen.diagnosis.adequacy.smooth_functions import SmoothFunction, Worth
+from modelgen.diagnosis.candidates import FittedCandidate, candidates
+from modelgen.diagnosis.candidates.candidate import Candidate
+from modelgen.diagnosis.candidates.search import Search
+from modelgen.diagnosis.equations import Equations, Rows
+from modelgen.diagnosis.evidence import System
+from modelgen.diagnosis.experiment import experiment, next_experiment, setup
+from modelgen.diagnosis.experiment.discrimination import Discriminator, hypothesis
+from modelgen.diagnosis.experiment.trajectory import as_run
+from modelgen.diagnosis.extended import drive_inertia, extended_model
+from modelgen.diagnosis.extended.uncertainty import deviations
+from modelgen.diagnosis.options import Thresholds
+from modelgen.diagnosis.selection import stepwise
+from modelgen.diagnosis.selection.backward import backward_elimination
+from modelgen.diagnosis.selection.cause import Cause, Selection
+from modelgen.diagnosis.selection.history import Ranked
+from modelgen.diagnosis.selection.refit import refit
+from modelgen.diagnosis.validation.gates import Gates, Judgement, instrumented
+from modelgen.excitation.problem import problem
+from modelgen.functions import build_model
+from modelgen.jobs import HERE
+from modelgen.numeric import Array
+from modelgen.thresholds import Value
+
+
+def constant(x: Array) -> Array:
+    """A law that does not depend on the position."""
+    return np.ones(len(x))
+
+
+def selected(equations: Equations, *trials: FittedCandidate, delta_bic: float = 90.0) -> Selection:
+    """The causes, and the system with them."""
+    system = equations
+    tables = [
+        np.concatenate([r.columns, *(t.columns[k] for t in trials)], axis=2)
+        for k, r in enumerate(system.rows)
+    ]
+    causes = [Cause(t, delta_bic, 5.0, 5.0) for t in trials]
+    return Selection(causes, System(equations, tables), [])
+
+
+# Candidates
+
+
+def searched(limits: Thresholds, effect: str) -> Any:
+    """Evidence of the best that the effect can do at the first joint, and the values searched for."""
+    equations = real(limits)
+    candidate = next(c for c in candidates(equations) if c.place == (effect, 1))
+    found = Search(System(equations)).trial(candidate)
+    return found and (found.gain.delta_bic, found.values)
+
+
+def turned(limits: Thresholds) -> Any:
+    """How often a wave that turns with the motor is tried where the residual repeats 2.4 times in a turn."""
+    equations = real(limits)
+    rows = [
+        replace(r, effort=r.effort + 0.5 * np.sin(2.4 * r.prepared.picked(r.prepared.motor)))
+        for r in equations.rows
+    ]
+    search = Search(System(equations.with_rows(rows)))
+    ripple = next(c for c in candidates(equations) if c.place == ("torque_ripple", 1))
+    ripple = replace(ripple, fixed={**ripple.fixed, "revolution": 2 * np.pi})
+    with patch.object(search, "_at", return_value=None) as tried:
+        search.trial(ripple)
+    return tried.call_count
+
+
+# Validation
+
+
+def gates(limits: Thresholds, count: int = 2, *, repeat: bool = True, blur: float = 0.0) -> Any:
+    """Judgement of a constant where there is one, by so many records."""
+    equations = known(limits, lambda x: 0.4 * constant(x), repeat=repeat)
+    rows, periods = list(equations.rows), list(equations.periods)
+    for seed in range(1, count // 2):
+        rows += made(lambda x: 0.4 * constant(x), seed)[0]
+        periods += periods[:2]
+    equations = replace(equations, rows=rows, periods=periods, blur=np.array([blur]))
+    return Gates(System(equations), []).judged(law(equations, constant))
+
+
+def faint_in_one(limits: Thresholds) -> bool:
+    """Whether impacts that are four times weaker in one record are said to be in the other alone."""
+    equations = known(limits)
+    trial = law(equations, np.sign, "backlash")
+    first, second = trial.columns
+    return Gates(System(equations), [])._somewhere(replace(trial, columns=[0.25 * first, second]))
+
+
+def at_first_joint(equations: Equations, columns: Sequence[Array]) -> FittedCandidate:
+    """An offset of the first joint's friction with columns (M,) of the records of two joints."""
+    tables = [column[:, None, None] * [[1.0], [0.0]] for column in columns]
+    gain = System(equations).gain(tables)
+    assert gain is not None
+    return FittedCandidate(Candidate("friction_offset", 1), {}, tables, gain)
+
+
+def by_instruments(limits: Thresholds) -> bool:
+    """Whether an offset that is there is seen where the positions have no errors."""
+    equations = real(limits)
+    given = [replace(r, effort=r.effort + np.array([0.6, 0.0])) for r in equations.rows]
+    equations = equations.with_rows(given)
+    return instrumented(at_first_joint(equations, [np.ones(len(r.effort)) for r in given]), System(equations))
+
+
+# Selection
+
+
+def of_all_joints(limits: Thresholds) -> Any:
+    """Why what promises for all joints half of what it does at one is not taken."""
+    pairs = {None: Judgement(5.0, 5.0, ""), 1: Judgement(10.0, 10.0, "")}
+    trials = [valued(90.0, joint=joint) for joint in pairs]
+    equations = real(limits)
+    steps = stepwise._Steps(equations, [], None, HERE)
+    asked = SimpleNamespace(judged=lambda t: pairs[t.candidate.joint])
+    with patch.object(stepwise, "harmless", return_value=True):
+        return [by.refused for _, by in steps._judged(trials, asked)]  # type: ignore[arg-type]
+
+
+def impossible(limits: Thresholds) -> Any:
+    """Effects that stay of two, of which one would have to brake backwards."""
+    equations = known(limits)
+    backwards = law(equations, lambda x: -constant(x), "coulomb_friction")
+    other = law(equations, np.sin, "friction_offset")
+    found = selected(equations, backwards, other)
+    stayed, _ = backward_elimination(found.causes, found.system, -1e9)
+    return [c.trial.candidate.effect for c in stayed]
+
+
+def anew(limits: Thresholds) -> Any:
+    """Columns of an effect that depend on the arm's parameters, once these were found beside it."""
+    equations = real(limits)
+    candidate = next(c for c in candidates(equations) if c.place == ("time_delay", 1))
+    trial = Search(System(equations)).trial(candidate)
+    assert trial is not None
+    cause = Cause(trial, 90.0, 5.0, 5.0)
+    refit([cause], equations)
+    return [float(np.abs(c).sum()) for c in cause.trial.columns]
+
+
+def turns(limits: Thresholds) -> int:
+    """How many causes are looked for where there is always one more."""
+    with patch.object(stepwise._Steps, "take", return_value=True) as taken:
+        stepwise.forward_selection(real(limits), [])
+    return taken.call_count
+
+
+# Adequacy
+
+
+def outdone(
+    limits: Thresholds,
+    own: float,
+    instead: tuple[float, float],
+    added: tuple[float, float],
+    causes: int = 2,
+) -> bool:
+    """Whether a function takes the place of a cause. own: the cause's evidence; instead, added: the
+    function's, in the fair and in the plain equations, in its place and beside it.
+    """
+    equations = known(limits)
+    found = selected(equations, *[law(equations, constant)] * causes, delta_bic=own)
+    shape = SmoothFunction("", {})
+    with (
+        patch.object(stand_ins, "together", return_value=own),
+        patch.object(stand_ins, "log_evidence", return_value=Worth(*instead, 5.0)),
+    ):
+        return stand_ins._outdone(found.causes[0], found, equations, [(shape, Worth(*added, 5.0))], False)
+
+
+def outdone_together(limits: Thresholds) -> bool:
+    """Whether a function of evidence 103 outdoes two causes that have 54 each."""
+    equations = known(limits)
+    found = selected(equations, law(equations, constant), law(equations, np.sin))
+    with (
+        patch.object(stand_ins, "together", lambda some, *_, **__: 54.0 * len(some)),
+        patch.object(stand_ins, "log_evidence", return_value=Worth(103.0, 103.0, 5.0)),
+    ):
+        return stand_ins._outdone_together(found, equations, [SmoothFunction("", {})])
+
+
+def doubted(
+    limits: Thresholds, effect: str = "friction_offset", column: Any = constant, **others: Value
+) -> bool:
+    """Whether a cause that takes away a part of a hidden force is held against functions."""
+    equations = known(
+        limits.with_values({f"adequacy.{name}": value for name, value in others.items()}),
+        lambda x: 0.6 + 1.2 * np.sin(3.0 * x),
+    )
+    return bool(stand_ins.doubtful(selected(equations, law(equations, column, effect)), equations))
+
+
+def doubted_by_another_joint(limits: Thresholds) -> bool:
+    """Whether a cause that leaves nothing of a force at its own joint is doubted for one at the other."""
+    rows = []
+    for seed in (1, 2):
+        x = positions(seed)[:, 0]
+        noise = default_rng([3, seed]).normal(size=(len(x), 2))
+        effort = np.column_stack([x + 0.6, x + 3.0 * np.sin(3.0 * x)]) + noise
+        table = np.zeros((len(x), 2, 2))
+        table[:, 0, 0], table[:, 1, 1] = x, x
+        rows.append(Rows(UNUSED, effort, table, np.ones((len(x), 2), dtype=bool), BARE))
+    equations = replace(equations_of(rows, [PERIOD, PERIOD]), thresholds=limits)
+    trial = at_first_joint(equations, [np.ones(len(r.effort)) for r in rows])
+    return bool(stand_ins.doubtful(selected(equations, trial), equations))
+
+
+def equal(limits: Thresholds) -> Any:
+    """Effects that span what one of two others does."""
+    equations = real(limits)
+    places = [("friction_offset", 1), ("asymmetric_viscous_friction", 1), ("viscous_friction", 1)]
+    offset, *pool = [Candidate(*place) for place in places]
+    base = System(equations).base
+    return [[c.effect for c in found] for found in aliases([offset], pool, equations, base)]
+
+
+def absorbed(limits: Thresholds) -> Any:
+    """Whether a tilt of the base is still an error of the first encoder, and not absorbed by the arm."""
+    equations = real(limits)
+    pool = candidates(equations)
+    tilt, error = (
+        next(c for c in pool if c.place == place) for place in (("base_tilt", None), ("encoder_offset", 1))
+    )
+    return aliases([tilt], [error], equations, System(equations).base) == [[error]]
+
+
+def dominated(limits: Thresholds) -> bool:
+    equations = real(limits)
+    cause = Cause(valued(50.0), 50.0, 5.0, 5.0)
+    refused = Ranked("spring", 1, 70.0, 1.0, 1.0, "gain")
+    taken = Ranked(*cause.trial.candidate.place, 50.0, 5.0, 5.0, "", taken=True)
+    found = dominance(cause, Selection([cause], System(equations), [[refused, taken]]))
+    return found.ahead > found.most
+
+
+def freely(limits: Thresholds, column: Any) -> bool:
+    """Whether a free function of a joint's position is better than a cause with this law of the right one."""
+    equations = real(limits)
+    hidden = [np.sin(3.0 * r.prepared.picked(r.prepared.q)[:, 0]) for r in equations.rows]
+    given = [
+        replace(r, effort=r.effort + 0.5 * x[:, None] * [1.0, 0.0])
+        for r, x in zip(equations.rows, hidden, strict=True)
+    ]
+    equations = equations.with_rows(given)
+    trial = at_first_joint(equations, [column(x) for x in hidden])
+    return free_forms(selected(equations, trial), equations)[1].better
+
+
+def clipped(x: Array) -> Array:
+    """A law that has a part of what is there."""
+    return np.clip(x, -0.2, 0.2)
+
+
+def claimed(limits: Thresholds) -> Any:
+    equations = known(limits)
+    trial = law(equations, constant, "payload_change")
+    trial = replace(trial, candidate=replace(trial.candidate, part=("mass",)))
+    return significant(0, selected(equations, trial)).passed
+
+
+def stable(limits: Thresholds) -> Any:
+    equations = known(limits)
+    return _stable(0, selected(equations, law(equations, constant))).passed
+
+
+# Extended
+
+
+def split(limits: Thresholds) -> Any:
+    """Drives whose inertia is split from the links', of which they have a fifth."""
+    link = Inertial(3.0, (0.2, 0.0, 0.0), (0.01, 0.0, 0.0, 0.2, 0.0, 0.2))
+    model = build_model(replace(ARM, links=(link, link)))
+    equations = replace(real(limits), model=model)
+    cause = Cause(valued(50.0, "joint_flexibility"), 50.0, 5.0, 5.0)
+    system: Any = SimpleNamespace(base=np.full(len(model.grouping.base), 1.2))
+    selection = Selection([cause], system, [])
+    with patch.object(drive_inertia, "refound", return_value=selection):
+        found, _, _ = drive_inertia.split_drive_inertia(selection, equations)
+    return list(found)
+
+
+def determined(limits: Thresholds) -> Any:
+    """Which values of a law have a standard deviation."""
+    equations = real(limits)
+    trial = next(c for c in candidates(equations) if c.place == ("stribeck_friction", 1))
+    found = Search(System(equations)).trial(trial)
+    assert found is not None
+    (spread,) = deviations(selected(equations, found), equations)
+    return {name: bool(np.isfinite(value)) for name, value in spread.items()}
+
+
+def windows(limits: Thresholds) -> Any:
+    """Number and length of the windows in which a record is simulated."""
+    rows = real(limits).rows[0]
+    fitted: Any = SimpleNamespace(model=SimpleNamespace(functions=()), parameters=None)
+    with patch.object(extended_model, "simulated_windows") as simulated:
+        extended_model.replay(fitted, rows, limits.extended)
+    *_, starts, length = simulated.call_args.args
+    return len(starts), length
+
+
+# Experiment
+
+
+def plan(limits: Thresholds, *, free: bool = False) -> Any:
+    """An experiment for a cause that three others could stand for. free: nothing can be commanded."""
+    equations = real(limits)
+    names = ("friction_offset", "spring", "viscous_friction", "stribeck_friction")
+    first, *rivals = [valued(50.0, name) for name in names]
+    named: Any = SimpleNamespace(
+        effect=first.candidate.effect, joint=1, aliases=(), ambiguous_with=[(n, 1, 1.0) for n in names[1:]]
+    )
+    cause = Cause(first, 50.0, 5.0, 5.0, [(t, 1.0) for t in rivals])
+    system = System(equations)
+    stage = None if free else setup(ARM, equations, system.base)
+    with (
+        patch.object(experiment, "propose", return_value=None),
+        patch.object(experiment, "readings", return_value=[]),
+        patch.object(experiment, "tests", return_value=[]),
+    ):
+        return next_experiment([named], [cause], stage, system, None)
+
+
+def kept_from_limits(limits: Thresholds) -> Any:
+    equations = real(limits)
+    stage = setup(ARM, equations, System(equations).base)
+    found = as_run(stage, problem(stage.arm, stage.settings(2500)), 0)
+    return found is not None and float(np.abs(found[:, 1:]).sum())
+
+
+def told_apart(limits: Thresholds) -> Any:
+    """Whether a motion tells an offset from one with damping that depends on the direction."""
+    equations = real(limits)
+    system = System(equations)
+    search = Search(system)
+    members = []
+    for name in ("friction_offset", "asymmetric_viscous_friction"):
+        found = search.trial(Candidate(name, 1))
+        assert found is not None
+        members.append(hypothesis(found, limits.experiment))
+    judge = Discriminator(system, equations, system.base)
+    return np.isfinite(judge.evidence(members, equations.rows)).tolist()
+
+
+CASES: dict[str, tuple[Value, Seen]] = {
+    "candidates.min_refined_delta_bic": (-1e3, lambda t: searched(t, "stribeck_friction")),
+    "candidates.wave_search_price": (50.0, lambda t: searched(t, "torque_ripple")),
+    "candidates.max_wave_deviation": (0.5, turned),
+    "validation.min_measured_share": (
+        9.0,
+        lambda t: gates(t.with_values({"validation.min_agreement": 2.0})).refused,
+    ),
+    "validation.max_rise": (-1.0, lambda t: gates(t).refused),
+    "validation.min_power_share": (0.9, faint_in_one),
+    "validation.position_error_factor": (1e3, lambda t: gates(t, repeat=False, blur=0.02).refused),
+    "validation.min_instrument_deviations": (1e3, by_instruments),
+    "validation.max_records_one_by_one": (2, lambda t: gates(t, count=4).gain),
+    "selection.min_whole_arm_share": (0.4, of_all_joints),
+    "selection.max_sign_deviations": (1e3, impossible),
+    "selection.max_refit_growth": (0.1, anew),
+    "selection.max_causes": (9, turns),
+    "selection.max_causes_per_joint": (9, turns),
+    "adequacy.beside_delta_bic": (9.0, lambda t: outdone(t, 50.0, (52.0, 50.0), (8.0, 8.0))),
+    "adequacy.lone_cause_delta_bic": (3.0, lambda t: outdone(t, 50.0, (55.0, 50.0), (5.0, 5.0), causes=1)),
+    "adequacy.detail_ratio": (4.0, lambda t: outdone(t, 20.0, (10.0, 10.0), (50.0, 50.0))),
+    "adequacy.slow_delta_bic": (60.0, lambda t: outdone(t, 50.0, (48.0, 100.0), (1.0, 50.0))),
+    "adequacy.as_good_delta_bic": (1.0, lambda t: outdone(t, 50.0, (48.0, 100.0), (1.0, 50.0))),
+    "adequacy.as_good_share": (0.1, lambda t: outdone(t, 100.0, (92.0, 150.0), (1.0, 50.0))),
+    "adequacy.behind_delta_bic": (5.0, lambda t: outdone(t, 50.0, (52.0, 40.0), (8.0, 8.0))),
+    "adequacy.further_cause_price": (1.0, outdone_together),
+    "adequacy.min_explained_repeating": (0.1, lambda t: doubted(t, max_left_in_part=9.0)),
+    "adequacy.max_left_in_part": (9.0, lambda t: doubted(t, min_explained_repeating=0.0)),
+    "adequacy.clear_part_ratio": (9.0, doubted_by_another_joint),
+    "adequacy.min_repeating_share": (9.0, lambda t: doubted(t, max_left_in_part=9.0)),
+    "adequacy.rough_delta_bic": (10.0, lambda t: doubted(t, "backlash")),
+    "adequacy.max_alias_angle": (2.0, equal),
+    "adequacy.min_absorbed_share": (2.0, absorbed),
+    "adequacy.max_behind_refused": (30.0, dominated),
+    "adequacy.max_free_form_ahead": (1e6, lambda t: freely(t, constant)),
+    "adequacy.max_free_form_share": (1e6, lambda t: freely(t, clipped)),
+    "adequacy.min_free_form_beside": (1e6, lambda t: freely(t, constant)),
+    "adequacy.min_claimed_deviations": (1e3, claimed),
+    "adequacy.min_stable_probability": (2.0, stable),
+    "extended.min_inertia_share": (0.4, split),
+    "extended.max_relative_deviation": (1e9, determined),
+    "extended.simulated_window": (1.0, windows),
+    "extended.max_windows": (3, windows),
+    "experiment.max_members": (2, lambda t: len(plan(t).members)),
+    "experiment.periods": (7, lambda t: plan(t, free=True).run),
+    "experiment.limit_margin": (0.3, kept_from_limits),
+    "experiment.min_left_share": (2.0, told_apart),
+}
