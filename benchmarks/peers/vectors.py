@@ -1,103 +1,104 @@
-"""Four states at once: the generated programs in vectors of four doubles."""
+"""Many states in one call: the generated functions over arrays beside themselves one by one."""
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
 
-from modelgen.functions import build_model, nominal_base
-from modelgen.graph import Program, Term
+from modelgen.functions import Function, build_model, nominal_base
+from peers import ours
 from peers.arms import LINKS_ALONE, Subject
 from peers.build import object_file, program
 from peers.harness_source import harness_source
-from peers.measure import Call, instructions, values
-from peers.ours import FUNCTIONS
+from peers.measure import Call, instructions, nanoseconds, values
 
 Array = NDArray[np.float64]
-_LANES = 4
-_AGREEMENT = 1e-9
-_INPUTS = ("q", "dq", "third", "sin_q", "cos_q")
-_HEAD = """\
-typedef double V __attribute__((vector_size(32)));
-"""
-_OPERATORS = {"add": "+", "sub": "-", "mul": "*", "div": "/"}
+_STATES = 60  # in one call
+_AGREEMENT = 1e-12
+_SECONDS = 2.0
+_THIRD = ("ddq", "input")
 
 
-def _text(term: Term) -> str:
-    """C of a term."""
-    tag = term[0]
-    if tag == "const":
-        return f"({term[1]!r})"
-    if tag == "let":
-        return f"t{term[1]}"
-    if tag == "in":
-        name = "third" if term[1] in ("ddq", "input") else term[1]
-        return f"{name}[{term[2]}]"
-    if tag == "neg":
-        return f"(-{_text(term[1])})"
-    return f"({_text(term[1])} {_OPERATORS[tag]} {_text(term[2])})"
+def _head(arm: str, joints: int, largest: int) -> str:
+    """Arrays of states, and how they are filled: every one with the same state."""
+    return "\n".join(
+        [
+            f'#include "{arm}.h"',
+            f"enum {{ N = {_STATES}, JOINTS = {joints} }};",
+            f"static double v_q[JOINTS * N], v_dq[JOINTS * N], v_third[JOINTS * N], v_out[{largest} * N];",
+            f"static {arm}_status_t status[N];",
+            "static void fill(const double *q, const double *dq, const double *third)",
+            "{",
+            "    for (int k = 0; k < JOINTS; k++)",
+            "        for (int i = 0; i < N; i++) {",
+            "            v_q[k * N + i] = q[k];",
+            "            v_dq[k * N + i] = dq[k];",
+            "            v_third[k * N + i] = third[k];",
+            "        }",
+            "}",
+        ]
+    )
 
 
-def _function(name: str, made: Program, kind: str) -> str:
-    """C of a program whose values are of the type `kind`; tests of pivots left out."""
-    arguments = ", ".join(f"const {kind} *{x}" for x in _INPUTS)
-    lines = [f"static __attribute__((noinline)) void {name}({arguments}, {kind} *out)", "{"]
-    lines += [f"    (void){x};" for x in _INPUTS]
-    for statement in made.statements:
-        if isinstance(statement.target, int):
-            lines.append(f"    const {kind} t{statement.target} = {_text(statement.term)};")
-        elif statement.target[0] != "guard":
-            zero = "" if kind == "double" else " + (V){0, 0, 0, 0}"
-            lines.append(f"    out[{statement.target[1]}] = {_text(statement.term)}{zero};")
-    return "\n".join([*lines, "}", ""])
+def _calls(arm: str, functions: Mapping[str, Function]) -> dict[str, tuple[str, int]]:
+    """Each function in one state, and in many; of those the last one's result."""
+    calls = {"nothing": ("fill(q, dq, third);\n    out[0] = 0.0", 1)}
+    for key, f in functions.items():
+        names = ["third" if a.name in _THIRD else a.name for a in f.arguments]
+        size = f.outputs[0].size
+        calls[f"{key}_one"] = (f"{arm}_{f.name}({', '.join(names)}, out)", size)
+        given = ", ".join(["N", *(f"v_{name}" for name in names), "v_out", "status"])
+        lines = [
+            "fill(q, dq, third)",
+            f"{arm}_{f.name}_batch({given})",
+            f"for (int k = 0; k < {size}; k++)\n        out[k] = v_out[k * N + N - 1]",
+        ]
+        calls[f"{key}_many"] = (";\n    ".join(lines), size)
+    return calls
 
 
-def _filled(kind: str, joints: int) -> str:
-    """Statements that copy the state, and some sines and cosines, into vectors."""
-    sources = dict(zip(_INPUTS, ("q", "dq", "third", "dq", "third"), strict=True))
-    lines = [f"static {kind} {', '.join(f'v_{x}[{joints}]' for x in _INPUTS)};"]
-    lines += [f"for (int i = 0; i < {joints}; i++) {{"]
-    lines += [f"    v_{x}[i] = {source}[i] + ({kind}){{0}};" for x, source in sources.items()]
-    return "\n    ".join([*lines, "}"])
+def packed(case: Subject, folder: Path) -> dict[str, dict[str, dict[str, float]]]:
+    """Instructions and nanoseconds per state of each function, states one by one and many in one call.
 
-
-def packed(case: Subject, folder: Path) -> dict[str, dict[str, float]]:
-    """Instructions per state of each function, for one state and for four at once.
-
-    Sine and cosine are given, inputs and pivots not tested. Raises RuntimeError where the results differ.
+    All that a call does is in them: sine and cosine, the tests of inputs, pivots and results. Raises
+    RuntimeError where the results differ.
     """
-    options = replace(LINKS_ALONE, sincos=True)
+    folder = folder / "vectors"
+    model = build_model(case.arm, LINKS_ALONE)
+    names = {key: f"{key}_identified" if both else key for key, (_, both) in ours.FUNCTIONS.items()}
+    options = replace(LINKS_ALONE, identified=nominal_base(model), batch=frozenset(names.values()))
     model = build_model(case.arm, options)
-    model = build_model(case.arm, replace(options, identified=nominal_base(model)))
     functions = {f.name: f for f in model.functions}
-    made = {key: functions[f"{key}_identified" if both else key] for key, (_, both) in FUNCTIONS.items()}
-    counts: dict[str, dict[str, float]] = {}
-    results: dict[str, dict[str, Array]] = {}
-    for kind, lanes in (("double", 1), ("V", _LANES)):
-        copied = _filled(kind, case.joints)
-        given = ", ".join(f"v_{x}" for x in _INPUTS)
-        calls = {"nothing": (f"{copied}\n    (void)out", 1)}
-        text = [_HEAD]
-        for key, function in made.items():
-            text.append(_function(key, function.program, kind))
-            calls[key] = (f"{copied}\n    {key}({given}, ({kind} *)out)", function.outputs[0].size * lanes)
-        unit = folder / f"lanes_{kind}.c"
-        source = harness_source("\n".join(text), calls)
-        unit.write_text(
-            source.replace("static double out", "static _Alignas(32) double out"), encoding="utf-8"
-        )
-        call = Call(
-            program(folder / f"lanes_{kind}", [object_file(unit, unit.with_suffix(".o"))]), folder, case
-        )
-        results[kind] = values(call)
-        found = instructions(call)
-        counts[kind] = {key: round((found[key] - found["nothing"]) / lanes, 1) for key in made}
+    made = {key: functions[name] for key, name in names.items()}
+    ours.write(model, folder)
+    arm, include = case.arm.name, f"-I{folder / 'include'}"
+    largest = max(f.outputs[0].size for f in made.values())
+    calls = _calls(arm, made)
+    unit = folder / "vectors.c"
+    unit.write_text(harness_source(_head(arm, case.joints, largest), calls), encoding="utf-8")
+    sources = [folder / "src" / f"{arm}_{n}.c" for f in made.values() for n in (f.name, f"{f.name}_batch")]
+    sources.append(folder / "src" / f"{arm}_sincos.c")
+    objects = [object_file(source, source.with_suffix(".o"), include) for source in (*sources, unit)]
+    call = Call(program(folder / "vectors", objects), folder, case)
+    found = values(call)
     for key in made:
-        one = results["double"][key]
-        four = results["V"][key].reshape(*one.shape, _LANES)
-        if not np.abs(four - one[..., None]).max() < _AGREEMENT * np.abs(one).max():
-            raise RuntimeError(f"{case.arm.name}: {key} in vectors differs")
-    return {"one": counts["double"], "four": counts["V"]}
+        one, many = found[f"{key}_one"], found[f"{key}_many"]
+        if not np.abs(many - one).max() < _AGREEMENT * np.abs(one).max():
+            raise RuntimeError(f"{arm}: {key} in vectors differs")
+    counts, times = instructions(call), nanoseconds(call, _SECONDS)
+    return {
+        "instructions": _by_state(made, counts),
+        "time": _by_state(made, {key: float(np.median(blocks)) for key, blocks in times.items()}),
+    }
+
+
+def _by_state(made: Mapping[str, Function], found: Mapping[str, float]) -> dict[str, dict[str, float]]:
+    """A state's share of what was measured: what fills the arrays is no part of it."""
+    return {
+        "one": {key: round(found[f"{key}_one"], 1) for key in made},
+        "many": {key: round((found[f"{key}_many"] - found["nothing"]) / _STATES, 1) for key in made},
+    }

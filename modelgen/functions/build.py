@@ -7,6 +7,7 @@ from modelgen.base_parameters.rules import slid
 from modelgen.description.objects import Arm
 from modelgen.errors import InputError
 from modelgen.functions.assembly import Assembly
+from modelgen.functions.batch import batch_names
 from modelgen.functions.combined import combined_functions
 from modelgen.functions.derivatives import derivative_functions, row_wise_derivatives
 from modelgen.functions.dynamics import Dynamics
@@ -84,6 +85,7 @@ def build_model(arm: Arm, options: Options = DEFAULTS) -> Model:
         tuple(real.state_names()),
         tuple(nominal.values()),
         _levels(a, options),
+        batch_names(arm.name, options.batch, functions),
         (*fluid_remarks(plain, grouping), *_gain_remarks(options, arm)),
     )
 

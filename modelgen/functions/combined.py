@@ -18,6 +18,7 @@ ORDER = ("q", "sin_q", "cos_q", "dq", "ddq", "dq_r", "ddq_r", "input", "q_m", "d
 TAKEN = frozenset(
     (
         "check_parameters",
+        "lanes",
         "levels",
         "max",
         "min",
@@ -42,6 +43,8 @@ TAKEN = frozenset(
         "zero",
     )
 )
+# What the names of functions made of others end in.
+ENDS = (*SUFFIXES, "_batch", "_float", "_lanes", "_nearest", "_one")
 
 
 def combined_functions(arm: Arm, functions: Sequence[Function]) -> list[Function]:
@@ -63,8 +66,8 @@ def combined_functions(arm: Arm, functions: Sequence[Function]) -> list[Function
 
 def _check(one: Combined, known: Mapping[str, Function]) -> None:
     plain = [name for name in known if not name.endswith(SUFFIXES)]
-    if one.name in TAKEN or one.name in known or one.name.endswith((*SUFFIXES, "_float", "_nearest")):
-        listed = ", ".join(SUFFIXES)
+    if one.name in TAKEN or one.name in known or one.name.startswith("lanes_") or one.name.endswith(ENDS):
+        listed = ", ".join(ENDS)
         raise InputError(
             f"'{one.name}' is taken or ends in one of {listed}; choose another name",
             one.at,

@@ -132,4 +132,5 @@ class Model:
     states: tuple[str, ...] = ()  # names of the effects' states
     nominal: tuple[float, ...] = ()  # values of the base parameters, where they were asked for
     levels: Levels | None = None  # of the functions that watch, where noise is known
+    batch: tuple[str, ...] = ()  # names of functions that are wanted over many states too
     remarks: tuple[str, ...] = ()  # for the user: what can be told apart, and what cannot

@@ -111,6 +111,8 @@ def shown_options(options: Options) -> dict[str, str]:
         shown["jacobian"] = options.jacobian_link
     if options.nominal:
         shown["nominal"] = "folded in"
+    if options.batch:
+        shown["batch"] = " and ".join(sorted(options.batch))
     if options.real != "double":
         shown["real"] = options.real
     if options.identified:

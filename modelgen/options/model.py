@@ -54,6 +54,12 @@ class ModelOptions:
     real: str = option(
         "double", "Real numbers in C where the compiler is not told: float or double.", choices=REALS
     )
+    batch: frozenset[str] = option(
+        frozenset(),
+        "Functions that C has over many states at once too: inverse_dynamics,regressor, or all.",
+        "NAMES",
+        kind=str,
+    )
     nominal: bool = option(
         False,
         "Also fold in the nominal values of links and effects: functions that end in _nominal, and an array.",
@@ -64,6 +70,7 @@ class ModelOptions:
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "without", parts_of(self.without))
+        object.__setattr__(self, "batch", frozenset(_words(self.batch)))
         check_gains(self.gains)
         if self.real not in REALS:
             hint = suggest(self.real, REALS)
@@ -77,14 +84,19 @@ class ModelOptions:
 
 def parts_of(given: str | Collection[str]) -> frozenset[str]:
     """Parts to leave out, from "drives,effects" or their names. Raises InputError for others."""
-    words = given.split(",") if isinstance(given, str) else given
-    parts = [word.strip() for word in words if word.strip()]
+    parts = _words(given)
     for part in parts:
         if part not in PARTS:
             raise InputError(
                 f"--without: found '{part}', expected {' or '.join(PARTS)}{suggest(part, PARTS)}"
             )
     return frozenset(parts)
+
+
+def _words(given: str | Collection[str]) -> list[str]:
+    """Words of a list, or between the commas of a text."""
+    words = given.split(",") if isinstance(given, str) else given
+    return [word.strip() for word in words if word.strip()]
 
 
 def check_gains(gains: str) -> None:

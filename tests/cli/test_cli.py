@@ -234,6 +234,7 @@ BAD = [
     (["bad.yaml"], "bad.yaml:8:"),
     (["--out", "bad.yaml"], "cannot write to bad.yaml: bad.yaml is a file, expected a folder"),
     (["--out", "bad.yaml/sub"], "cannot write to bad.yaml/sub: bad.yaml is a file, expected a folder"),
+    (["--arm", "rx90", "--batch", "gravity,biass"], "--batch: found 'biass', did you mean 'bias'?"),
     (["--arm", "rx90", "--out", "mine"], "cannot replace mine/rx90: it was not generated (no manifest.json)"),
     (["--arm", "rx90", "--jacobian-link", "j9"], "j9"),
 ]

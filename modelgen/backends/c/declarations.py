@@ -6,6 +6,7 @@ import re
 from collections.abc import Iterable
 from dataclasses import dataclass
 
+from modelgen.backends.c.batch import BATCH, batches
 from modelgen.backends.c.dialect import arrays, destinations, literal
 from modelgen.backends.c.lengths import argument_length, array_lengths
 from modelgen.backends.c.levels import levels
@@ -133,6 +134,7 @@ def header_values(model: Model, functions: list[FunctionText]) -> dict[str, obje
         "linked": _linked(model),
         "functions": functions,
         "levels": levels(model),
+        "batches": batches(model),
         "strokes": strokes(model),
         "wrappers": wrappers(model),
         "motor_unit": _motor_unit(model),
@@ -156,6 +158,7 @@ def _linked(model: Model) -> list[str]:
         names += ["observer_gain", "observer_threshold", "observer_alarms"]
         names += ["monitor_alarms"] if model.levels.start else []
     names += [stroke.name for stroke in strokes(model)]
+    names += [f"{name}{BATCH}" for name in model.batch]
     if "regressor_packed" in names:
         names += ["regressor_rows", "regressor_columns"]
     if model.nominal:

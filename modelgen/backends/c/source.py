@@ -26,7 +26,7 @@ def statements(
     arm: str, function: Function, named: Mapping[str, Sequence[Element | None]], joints: int
 ) -> list[str]:
     """The body of the function, line by line. `joints`: size of q. Raises ValueError as `literal` does."""
-    status = _checked_output(function)
+    status = checked_output(function)
     dialect = CDialect(arm, function, named, checked=bool(status))
     macro = arm.upper()
     lines = [*dialect.indices(), f"{INDENT}{arm}_status_t status = {macro}_STATUS_OK;", ""]
@@ -86,7 +86,7 @@ def _zeros(arm: str, function: Function, dialect: CDialect) -> list[str]:
     return lines
 
 
-def _checked_output(function: Function) -> int:
+def checked_output(function: Function) -> int:
     """The status to report where an output is not finite, 0 where that cannot happen."""
     if any(s.target == ("guard", STATUS_PIVOT) for s in function.program.statements):
         return STATUS_PIVOT
