@@ -14,30 +14,38 @@ from modelgen.native.lanes import _HEAD
 
 
 class RegressorColumns(Columns):
-    """Selected columns of a regressor. elements: (c,), numbers of the computed elements, in order."""
+    """Selected columns of a regressor. elements: (c,), numbers of the computed elements, in order.
 
-    def __init__(self, function: Function) -> None:
-        text, elements = text_of(function)
+    weighted: whether each sample brings weights of the regressor's rows (n,) after the function's arguments.
+    """
+
+    def __init__(self, function: Function, *, weighted: bool = False) -> None:
+        text, elements = text_of(function, weighted=weighted)
         super().__init__(text, len(elements))
         self.elements = np.array(elements, dtype=np.intp)
 
 
-def text_of(function: Function) -> tuple[str, list[int]]:
+def text_of(function: Function, *, weighted: bool = False) -> tuple[str, list[int]]:
     """C of the function's first output, and which of its elements (by their number) it computes, in order.
 
     The text defines LANES, INPUTS, COLUMNS and columns(x, out): x, the elements of the arguments one after
-    the other; out, what is computed of the output. What is beyond a domain comes as NaN, as in NumPy.
+    the other, and weights of the output's rows after them if asked for; out, what is computed of the output.
+    What is beyond a domain comes as NaN, as in NumPy.
     """
     (output,) = function.outputs
     targets = [s.target for s in function.program.statements]
     computed = sorted(t[1] for t in targets if isinstance(t, tuple) and t[0] == output.name)
     dialect = _Lanes(function, {element: k for k, element in enumerate(computed)})
+    given = sum(a.size for a in function.arguments)
+    weights = (
+        [f"out[{k}] *= x[{given + e // output.columns}];" for k, e in enumerate(computed)] if weighted else []
+    )
     lines = [
         _HEAD,
-        f"enum {{ INPUTS = {sum(a.size for a in function.arguments)}, COLUMNS = {len(computed)} }};",
+        f"enum {{ INPUTS = {given + (output.rows if weighted else 0)}, COLUMNS = {len(computed)} }};",
         "static void columns(const lanes_t x[], lanes_t out[])",
         "{",
-        *(f"    {line}" for line in body(function, {}, dialect)),
+        *(f"    {line}" for line in [*body(function, {}, dialect), *weights]),
         "}",
     ]
     return "\n".join(lines) + "\n", computed

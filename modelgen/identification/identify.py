@@ -137,11 +137,13 @@ def _fitted(
 ) -> tuple[Regression, Solution]:
     """Rows and least squares. Columns that depend on the load are evaluated anew with the load found."""
     theta = np.zeros(len(model.grouping.base))
-    regression = regression_of(evaluator, model, train, theta, added)
+    # noise that joints share is shared by whole rows alone
+    whole = method == "gls"
+    regression = regression_of(evaluator, model, train, theta, added, all_samples=whole)
     enough(model.arm, regression)
     solution = regression.solve(method)
     if _columns_by_load(model):
-        regression = regression_of(evaluator, model, train, solution.theta, added)
+        regression = regression_of(evaluator, model, train, solution.theta, added, all_samples=whole)
         solution = regression.solve(method)
     return regression, solution
 
@@ -214,6 +216,8 @@ def _by_instruments(
     theta, found = least.theta, None
     for _ in range(TURNS):
         motions = [given.simulated(p, dict(zip(names, theta.tolist(), strict=True))) for p in train]
+        # of the same samples
+        motions = [replace(m, awake=p.awake) for m, p in zip(motions, train, strict=True)]
         made = regression_of(evaluator, model, motions, theta)
         instruments = [Instrument(c, m) for c, m in zip(made.columns, made.moving, strict=True)]
         found = compared(regression, least, instruments)

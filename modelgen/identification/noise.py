@@ -38,7 +38,7 @@ def noise_of(model: Model, evaluator: Evaluator, records: Sequence[Prepared], th
     external = outside(model, records, theta)
     if external is None:
         return None
-    regression = regression_of(evaluator, model, records, theta)
+    regression = regression_of(evaluator, model, records, theta, all_samples=True)
     residuals = regression.residuals(theta)
     n = residuals[0].shape[1]
     step = float(np.median(np.diff(records[0].t)))

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+from contextlib import suppress
 from itertools import pairwise
 
 import numpy as np
+from numpy.typing import NDArray
 
 from modelgen.backends.compiled import RegressorColumns
 from modelgen.dataset import Prepared
@@ -14,31 +16,34 @@ from modelgen.functions import Model
 from modelgen.native import compiler
 from modelgen.numeric import Array
 
+LEFT = 0.5  # of the filter's weight, that a row has from samples away from rest at least
 SAMPLED = ["q", "dq", "ddq"]  # what the regressor may depend on, to be compiled
 
 
 class Rows:
     """Rows of a model's regressor for records, with the efforts.
 
+    While a joint rests, be it for a moment, dry friction is whatever holds it. The filter would carry that to
+    rows beside, where it looks like other friction: effort and columns of such samples are taken out before.
+    all_samples: they stay, for rows that are to be looked at.
     joint, parameter: (c,), places in the regressor of the c columns that are computed; those of a joint
     stand side by side, at `of_joint`. With a C compiler, columns that depend on the motion alone are computed
     by it and pass the filter on the way; else NumPy computes them for all samples, to be filtered then.
     """
 
-    def __init__(self, model: Model, evaluator: Evaluator) -> None:
-        self.model, self.evaluator = model, evaluator
+    def __init__(self, model: Model, evaluator: Evaluator, *, all_samples: bool = False) -> None:
+        self.model, self.evaluator, self.all_samples = model, evaluator, all_samples
         self.n, self.p = len(model.arm.coordinates), len(model.grouping.base)
         self.joint = np.array(model.packed.rows, dtype=np.intp)
         self.parameter = np.array(model.packed.columns, dtype=np.intp)
         ends = np.searchsorted(self.joint, np.arange(self.n + 1))
         self.of_joint = [slice(a, b) for a, b in pairwise(ends)]
         (function,) = [f for f in model.functions if f.name == "regressor"]
-        self.motion_alone = [a.name for a in function.arguments] == SAMPLED
-        self._compiled: RegressorColumns | None = None
-        if self.motion_alone and compiler() is not None:
-            self._compiled = RegressorColumns(function)
-            at = self.joint * self.p + self.parameter
-            assert np.array_equal(self._compiled.elements, at)
+        self._compiled: dict[bool, RegressorColumns] = {}  # by whether samples have weights
+        if [a.name for a in function.arguments] == SAMPLED and compiler() is not None:
+            for weighted in (False, True):
+                self._compiled[weighted] = RegressorColumns(function, weighted=weighted)
+            assert np.array_equal(self._compiled[False].elements, self.joint * self.p + self.parameter)
 
     def of(self, p: Prepared, theta: Array) -> tuple[Array, Array]:
         """Effort (M, n) and columns (M, c) of a record. theta: for columns that depend on the load [base].
@@ -47,18 +52,29 @@ class Rows:
         """
         if p.input is None:
             raise InputError(f"{p.record.name}: a free motion has no effort to identify from")
-        motion = Motion(p.time, p.q, p.dq, p.ddq)
-        effort = np.asarray(p.parallel(self.evaluator.ideal(self.model, motion, p.input)))
-        if self._compiled is not None and self._compiled.fit(q=p.q):
-            try:
-                inputs, d = (p.q, p.dq, p.ddq), p.decimation
-                if d is None:
-                    return effort, p.parallel(self._compiled.values(inputs))
-                return effort, self._compiled.filtered(inputs, **vars(d))
-            except RuntimeError:  # a compiler that knows no vectors, say
-                self._compiled = None
-        full = np.asarray(self.evaluator.regressor(self.model, motion, theta))
-        return effort, p.parallel(full[:, self.joint, self.parameter])
+        motion, awake = Motion(p.time, p.q, p.dq, p.ddq), self._awake(p)
+        effort = self.evaluator.ideal(self.model, motion, p.input)
+        effort = np.asarray(p.parallel(effort if awake is None else effort * awake))
+        if self._compiled and RegressorColumns.fit(p.q):
+            inputs = [p.q, p.dq, p.ddq, *([] if awake is None else [awake.astype(np.float64)])]
+            made, d = self._compiled[awake is not None], p.decimation
+            with suppress(RuntimeError):  # a compiler that knows no vectors, say
+                return effort, made.filtered(inputs, **vars(d)) if d else p.parallel(made.values(inputs))
+            self._compiled = {}
+        full = np.asarray(self.evaluator.regressor(self.model, motion, theta))[:, self.joint, self.parameter]
+        return effort, p.parallel(full if awake is None else full * awake[:, self.joint])
+
+    def moving(self, p: Prepared) -> NDArray[np.bool_]:
+        """Rows (M, n) that count: joints move there, and most of what the filter has taken is left."""
+        awake = self._awake(p)
+        return p.moving if awake is None else p.moving & (p.parallel(awake.astype(np.float64)) > LEFT)
+
+    def _awake(self, p: Prepared) -> NDArray[np.bool_] | None:
+        """Samples (N, n) that count, None: all. Those of joints that never move, which hold, do."""
+        if self.all_samples or not p.settings.cutoff:  # without a filter nothing is carried
+            return None
+        awake = p.awake | ~p.moving.any(axis=0)
+        return None if awake.all() else awake
 
     def whole(self, columns: Array) -> Array:
         """The columns (M, c) as a matrix by sample (M, n, p)."""

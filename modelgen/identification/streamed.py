@@ -120,7 +120,7 @@ class _Blocks:
                     continue
                 p = prepare(record, stream.settings)
                 effort, columns = self.rows.of(p, zero)
-                yield number, (effort, columns, p.moving)
+                yield number, (effort, columns, self.rows.moving(p))
                 self.done += 1
                 if self.progress is not None:
                     self.progress(self.done, self.total)

@@ -27,7 +27,7 @@ def validate(
 
     Raises InputError for a free motion.
     """
-    regression = regression_of(evaluator, model, records, theta, added)
+    regression = regression_of(evaluator, model, records, theta, added, all_samples=True)
     gain = [np.ones(p.effort.shape) if p.gain is None else p.gain[p.rows] for p in records]
     more = [np.zeros_like(theta)] * len(records) if added is None else added
     whole = [y + c @ m for y, c, m in zip(regression.effort, regression.columns, more, strict=True)]
@@ -55,13 +55,15 @@ def regression_of(
     records: Sequence[Prepared],
     theta: Array,
     added: Sequence[Array] | None = None,
+    *,
+    all_samples: bool = False,
 ) -> Regression:
-    """Rows of the records. theta: for columns that depend on the load [base].
+    """Rows of the records. theta: for columns that depend on the load [base]. all_samples: as for `Rows`.
 
     added: base parameters (p,) that each record has in addition, of a payload: what they take is taken off
     the effort.
     """
-    made = Rows(model, evaluator)
+    made = Rows(model, evaluator, all_samples=all_samples)
     effort, columns = [], []
     for k, p in enumerate(records):
         more = np.zeros_like(theta) if added is None else added[k]
@@ -69,4 +71,4 @@ def regression_of(
         whole = made.whole(w)
         effort.append(y - whole @ more if more.any() else y)
         columns.append(whole)
-    return Regression(effort, columns, [p.moving for p in records])
+    return Regression(effort, columns, [made.moving(p) for p in records])

@@ -81,6 +81,19 @@ def test_shapes_of_the_work(samples: int, first: int, factor: int, steps: int, o
     assert found == pytest.approx(d(full[:, columns.elements]), abs=1e-11 * np.abs(full).max())
 
 
+def test_samples_may_have_weights_by_row() -> None:
+    function = regressor("yaw3pitch")
+    given = motion("yaw3pitch", 700)
+    d = decimation(700, np.arange(100, 600, 17), 60.0, RATE, 3)
+    assert d is not None
+    columns, n = RegressorColumns(function, weighted=True), given["q"].shape[1]
+    weights = np.random.default_rng(3).uniform(size=(700, n))
+    full = np.asarray(NumpyFunction(function)(**given)).reshape(700, n, -1) * weights[:, :, None]
+    found = columns.filtered([*given.values(), weights], **vars(d))
+    wanted = d(full.reshape(700, -1)[:, columns.elements])
+    assert found == pytest.approx(wanted, abs=1e-11 * np.abs(full).max())
+
+
 def test_plain_columns_are_those_of_numpy() -> None:
     rng = np.random.default_rng(1)
     table = rng.normal(size=(3000, 5)).cumsum(axis=0)

@@ -7,10 +7,11 @@ robots with power model"; Pham, Gautier and Poignet, 2001).
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
+from modelgen.dataset.couplings import couplings_of
 from modelgen.dataset.drives import drives_of
 from modelgen.dataset.objects import Record
 from modelgen.dataset.processing.decimation import Decimation, decimation, kept
@@ -32,8 +33,9 @@ class Prepared:
     unit, moved to the instants of the positions, not filtered; None for a free motion. gain: (N, n), input
     times gain is what the log carried, in `effort_unit` by joint. temperature: (N, n) [deg C] or None.
     rows: (M,) indices of the samples that are kept. t: (M,) their times [s]. moving: (M, n), whether the
-    joint moves there, away from rest. awake: (N, n), whether it does so at all samples, rests of a moment
-    counted as well; at all of a free motion. settings: as used, every choice made.
+    joint moves there, away from rest. awake: (N, n), whether it does so at all samples, and so does what it
+    turns with another joint, rests of a moment counted; at all of a free motion. settings: as used, every
+    choice made.
     """
 
     record: Record
@@ -160,8 +162,18 @@ def prepare(record: Record, settings: Settings | Chosen | None = None) -> Prepar
         rows=rows,
         moving=moving_samples(dq, rows, chosen, rate),
         # a swing turns slowly, and what is known of its friction is there
-        awake=np.ones(dq.shape, dtype=bool) if given is None else samples_away_from_rest(dq, chosen, rate),
+        awake=np.ones(dq.shape, dtype=bool) if given is None else _awake(record, dq, chosen),
     )
+
+
+def _awake(record: Record, dq: Array, chosen: Chosen) -> np.ndarray:
+    """Samples (N, n) away from rest, for speeds dq (N, n), of joints and of what turns with two of them."""
+    rate = 1.0 / record.step
+    awake = samples_away_from_rest(dq, chosen, rate)
+    for part in () if record.arm is None else couplings_of(record.arm):
+        own = replace(chosen, gates=(part.gate(chosen.gates),))
+        awake[:, [part.one, part.other]] &= samples_away_from_rest(part.speed(dq), own, rate)
+    return awake
 
 
 def _smoothed(columns: Array, step: float, chosen: Chosen) -> tuple[Array, Array, Array]:
