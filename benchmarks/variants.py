@@ -2,10 +2,11 @@
 
     python benchmarks/variants.py              print the tables
     python benchmarks/variants.py --accept     write benchmarks/variants.json, for the page of `make bench`
+    python benchmarks/variants.py --many       with --accept or without: many states in one call alone
 
 The three bench arms, parameters folded in, x86-64-v3, counted by callgrind; on a Cortex-M4F where
-arm-none-eabi-gcc is installed; and four states at once in vectors of four. Results are compared to those of
-the generator as it is.
+arm-none-eabi-gcc is installed; and many states in one call, in vectors of four. Results are compared to those
+of the generator as it is.
 """
 
 from __future__ import annotations
@@ -87,10 +88,24 @@ def main(arguments: Sequence[str]) -> int:
     """Count, print, write."""
     parser = argparse.ArgumentParser(description="Variants of the generated functions.")
     parser.add_argument("--accept", action="store_true", help="write benchmarks/variants.json")
+    parser.add_argument("--many", action="store_true", help="measure many states in one call alone")
     given = parser.parse_args(arguments)
     if missing := [tool for tool in ("gcc", "g++", "valgrind") if shutil.which(tool) is None]:
         parser.error(f"needs {missing[0]} (Debian: build-essential, valgrind)")
     cases = {name: subject(name, _SAMPLES) for name in BENCH}
+    accepted = ROOT / "benchmarks" / "variants.json"
+    whole = json.loads(accepted.read_text(encoding="utf-8")) if given.many else {"variants": compared(cases)}
+    for name in cases:
+        (WORK / name).mkdir(parents=True, exist_ok=True)
+    whole["vectors"] = {name: packed(case, WORK / name) for name, case in cases.items()}
+    print("\n".join(pages_variants.lines(whole)))
+    if given.accept:
+        accepted.write_text(json.dumps(whole, indent=1) + "\n", encoding="utf-8")
+    return 0
+
+
+def compared(cases: dict[str, Subject]) -> list[dict[str, Any]]:
+    """Figures of every variant, the generator as it is first."""
     references: dict[str, Any] = {}
     result: list[dict[str, Any]] = []
     for variant in (SHIPPED, *VARIANTS):
@@ -102,14 +117,7 @@ def main(arguments: Sequence[str]) -> int:
             references.setdefault(name, reference)
             arms[name] = found
         result.append({"group": variant.group, "text": variant.text, "arms": arms})
-    vectors = {name: packed(case, WORK / name) for name, case in cases.items()}
-    whole = {"variants": result, "vectors": vectors}
-    print("\n".join(pages_variants.lines(whole)))
-    if given.accept:
-        (ROOT / "benchmarks" / "variants.json").write_text(
-            json.dumps(whole, indent=1) + "\n", encoding="utf-8"
-        )
-    return 0
+    return result
 
 
 if __name__ == "__main__":

@@ -19,7 +19,7 @@ from peers.measure import Call, instructions, nanoseconds, values
 Array = NDArray[np.float64]
 _STATES = 60  # in one call
 _AGREEMENT = 1e-12
-_SECONDS = 2.0
+_SECONDS = 4.0
 _THIRD = ("ddq", "input")
 
 
