@@ -22,10 +22,8 @@ from modelgen.errors import InputError
 from modelgen.jobs import Where
 from modelgen.options import DiagnosisOptions, changed
 from modelgen.progress import Progress, silent
-from modelgen.report.diagnosis import sketches
-from modelgen.report.diagnosis_sentences import assumptions, compared, harms, suspicions, unnamed, worth
+from modelgen.report.diagnosis_sentences import assumptions, compared, harms, headline, suspicions
 from modelgen.report.experiment import followed
-from modelgen.report.figures import Pen
 from modelgen.report.writing import write
 
 
@@ -36,8 +34,6 @@ class Diagnosis(Shown):
     ----------
     found : modelgen.diagnosis.result.Diagnosis
         What the diagnosis gives back.
-    pen : Pen, optional
-        It draws the pictures.
 
     Attributes
     ----------
@@ -55,8 +51,8 @@ class Diagnosis(Shown):
         Base parameters (p,) of the extended arm by name: value, std, unit.
     """
 
-    def __init__(self, found: Found, pen: Pen | None = None) -> None:
-        self.found, self._pen = found, pen
+    def __init__(self, found: Found) -> None:
+        self.found = found
         self.arm: Arm = found.arm
         self.verdict, self.reason = found.verdict, found.reason
         self.causes: tuple[NamedCause, ...] = found.causes
@@ -96,7 +92,7 @@ class Diagnosis(Shown):
         InputError
             Where the folder cannot be written.
         """
-        write(self.found, Path(folder), code=code, pen=self._pen)
+        write(self.found, Path(folder), code=code)
 
     def shown(self) -> Sequence[str | Table]:
         """Lines and tables of `modelgen diagnose`.
@@ -107,7 +103,7 @@ class Diagnosis(Shown):
             In the order in which they are printed.
         """
         d = self.found
-        parts: list[str | Table] = [sentence(d)]
+        parts: list[str | Table] = [headline(d)]
         rows = [_row(c) for c in d.causes]
         if rows:
             headings = (
@@ -146,7 +142,7 @@ class Diagnosis(Shown):
         return parts
 
     def __repr__(self) -> str:
-        return f"Diagnosis of {self.arm.name}: {self.verdict}. {sentence(self.found)}"
+        return f"Diagnosis of {self.arm.name}: {self.verdict}. {headline(self.found)}"
 
 
 def diagnose(
@@ -199,9 +195,8 @@ def diagnosed(
     test: Sequence[Log],
     options: DiagnosisOptions,
     progress: Progress = silent,
-    pen: Pen | None = None,
 ) -> Diagnosis:
-    """The same with a pen that begins to draw before the experiment is looked for. Raises InputError."""
+    """The same of lists of logs. Raises InputError."""
     wanted = [_place(text) for text in options.effects]
     thresholds = USUAL.with_values(options.thresholds)
     progress("reading", 0, None)
@@ -215,17 +210,8 @@ def diagnosed(
         thresholds=thresholds,
         effects=wanted,
         where=Where(options.processes),
-        known=None if pen is None else lambda found: pen.give(sketches(found)),
     )
-    return Diagnosis(found, pen)
-
-
-def sentence(d: Found) -> str:
-    """The verdict for a person."""
-    if d.verdict == "named":
-        said = [f"{c.effect} {'of the arm' if c.joint is None else f'at joint {c.joint}'}" for c in d.causes]
-        return f"The model lacks {' and '.join(said)}: {worth(d)}."
-    return f"{unnamed(d)} {d.reason[0].upper()}{d.reason[1:]}."
+    return Diagnosis(found)
 
 
 def _place(text: str) -> tuple[str, int | None]:

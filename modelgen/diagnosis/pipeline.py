@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -28,22 +28,19 @@ def diagnose(
     options: Options | None = None,
     *,
     progress: Progress | None = None,
-    known: Callable[[Diagnosis], None] | None = None,
     **changes: Any,
 ) -> Diagnosis:
     """Name what the model of `arm` gets wrong in the records, and measure on the last one what naming it
     gains.
 
-    options: by default the usual ones. known: told what is found before the next experiment is looked for.
-    changes: fields of the options by name. Raises InputError where the records cannot answer.
+    options: by default the usual ones. changes: fields of the options by name. Raises InputError where the
+    records cannot answer.
     """
     options = replace(options or Options(), **changes)
     study = study_of(arm, found, options)
     decision = decided(study, options, progress)
     extension = extend(arm, decision.selection, decision.band.equations)
     result = reported(study, decision, extension, options)
-    if known is not None:
-        known(result)
     if options.experiment and result.verdict == "named":
         result = replace(result, next_experiment=proposed(result, study, extension, options, progress))
     return result

@@ -42,12 +42,15 @@ __all__ = [
 class Definition(Traits):
     """One entry of the catalogue: what every kind of effect has.
 
-    scope: whether it stands at a "joint", at the "arm", or at "either". confused_with: effects that
-    look alike in many records; experiment: what tells them apart. shown: values for its picture in
-    docs/effects.md, in the units of the motor coordinates [rad, N m].
+    text: what it is, in a phrase; finding: the clause that says it is there, with {joint}, {drive} or
+    {place} for where and values by their names, as {coefficient:%}. scope: whether it stands at a "joint", at
+    the "arm", or at "either". confused_with: effects that look alike in many records; experiment: what tells
+    them apart. shown: values for its picture in docs/effects.md, in the units of the motor coordinates
+    [rad, N m].
     """
 
     text: ClassVar[str]
+    finding: ClassVar[str] = ""
     reference: ClassVar[str]
     scope: ClassVar[str] = "joint"
     side: ClassVar[str] = "joint"  # whose coordinate {x} and {f} are units of: "joint" or "motor"

@@ -2,99 +2,35 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
-from jinja2 import Environment, FileSystemLoader, StrictUndefined
 from markupsafe import Markup
 
+from modelgen.charts import number, sheet
 from modelgen.diagnosis.extended import NamedCause
 from modelgen.diagnosis.result import Diagnosis
-from modelgen.diagnosis.selection import COARSE, EXCHANGED, STANDS_IN, SUPERFLUOUS, SUSPECT, Ranked
+from modelgen.diagnosis.validation import Check
 from modelgen.effects import CATALOGUE
-from modelgen.report.diagnosis_figures import effort, inline, left_over, replayed, residuals
+from modelgen.report.diagnosis_figures import efforts, replayed, residuals
 from modelgen.report.diagnosis_sentences import (
     assumptions,
     checked,
     compared,
     harms,
-    place_of,
-    suspicions,
-    unnamed,
+    missing,
+    remains,
+    rivals,
     worth,
 )
-from modelgen.report.experiment import described, picture
-from modelgen.report.figures import Sketch
+from modelgen.report.experiment import described
+from modelgen.report.following import following
+from modelgen.report.law_figures import judged_joint, law_charts, law_size
 from modelgen.report.named_joints import named_joints
-from modelgen.resources import templates_folder
-
-EFFORT, LEFT_OVER, REPLAY, NEXT = "effort", "left over", "replay", "next experiment"
-AGAINST = "left over against "
-
-
-def sketches(d: Diagnosis) -> dict[str, Sketch]:
-    """Sketches of all pictures, by name."""
-    found = {EFFORT: effort(d)}
-    found |= {AGAINST + name: sketch for name, sketch in residuals(d).items()}
-    replay = replayed(d)
-    if replay is not None:
-        found[REPLAY] = replay
-    if d.next_experiment is not None and d.next_experiment.proposal is not None:
-        found[NEXT] = picture(d.next_experiment)
-    return {**found, LEFT_OVER: left_over(d)}
-
-
-def pictures(drawn: Mapping[str, str]) -> dict[str, str]:
-    """Pictures of the report that stand alone, by file name."""
-    return {"effort.svg": drawn[EFFORT], "left_over.svg": drawn[LEFT_OVER]}
-
-
-def report(d: Diagnosis, drawn: Mapping[str, str] | None = None) -> str:
-    """HTML that needs nothing beside it. drawn: SVG text of `sketches` by name, drawn here by default."""
-    if drawn is None:
-        drawn = {name: sketch.drawn() for name, sketch in sketches(d).items()}
-    environment = Environment(
-        loader=FileSystemLoader(templates_folder()),
-        undefined=StrictUndefined,
-        autoescape=True,
-        trim_blocks=True,
-        lstrip_blocks=True,
-    )
-    template = environment.get_template("report/diagnosis.html.j2")
-    free = d.test.prepared.input is None
-    text: str = template.render(
-        arm=d.arm.name,
-        verdict=d.verdict,
-        sentence=_sentence(d),
-        arm_drawing=named_joints(d),
-        reason=d.reason,
-        causes=[_cause(d, k) for k in range(len(d.causes))],
-        harms=harms(d),
-        suspicions=suspicions(d),
-        assumptions=[*assumptions(d), *compared(d)],
-        fit=_fit(d),
-        errors=_errors(d),
-        unit=d.errors.unit,
-        simulation=_simulation(d),
-        effort_picture=inline(drawn[EFFORT]),
-        residual_pictures=[
-            (name.removeprefix(AGAINST), inline(text))
-            for name, text in drawn.items()
-            if name.startswith(AGAINST)
-        ],
-        replay_picture=inline(drawn[REPLAY]) if REPLAY in drawn else Markup(),
-        ranking=_rankings(d),
-        error_text=_ERRORS[free],
-        simulation_text=_SIMULATED[free],
-        parameters=[(name, f"{e.value:.6g}", f"{e.std:.2g}", e.unit) for name, e in d.parameters.items()],
-        missing=d.not_identifiable,
-        experiment=described(d.next_experiment, drawn.get(NEXT, "")),
-        log=d.log.lines(),
-        settings=[(name, _said(value)) for name, value in d.settings.items()],
-    )
-    return "\n".join(line.rstrip() for line in text.splitlines()) + "\n"
-
+from modelgen.report.page import block, rendered
+from modelgen.report.ranking import rankings
+from modelgen.report.words import at, finding, joint_name, joint_names, law, sentence
 
 # By whether the test record is a free motion.
 _ERRORS = {
@@ -105,48 +41,53 @@ _SIMULATED = {
     True: "The test record simulated from its release on",
     False: "Windows of the test record simulated from their measured initial states with the measured inputs",
 }
+_SHEET = ("speed", "position", "load (size of the effort)")  # of the residuals that stand in a file
 
 
-def _sentence(d: Diagnosis) -> Markup:
-    if d.verdict != "named":
-        return Markup(unnamed(d))
-    found = [Markup("<b>{}</b> at {}").format(c.effect, place_of(c.joint)) for c in d.causes]
-    return Markup("The model lacks {}: {}.").format(Markup(" and ").join(found), worth(d))
+def pictures(d: Diagnosis) -> dict[str, str]:
+    """Pictures of the report that stand alone, by file name."""
+    over = residuals(d)
+    rows = [over[name][j] for j in range(len(d.arm.coordinates)) for name in _SHEET]
+    return {"effort.svg": sheet(efforts(d), 2), "residuals.svg": sheet(rows, len(_SHEET))}
 
 
-# Why a candidate was not taken, by the gate that stayed shut, or taken back.
-_REFUSED = {
-    "evidence": "too little evidence",
-    "values": "values that the effect cannot have",
-    "gain": "gains too little on records that its fit has not seen",
-    "positions": "gains no more than errors of the positions could feign",
-    "other joints": "makes other joints worse",
-    "one joint": "does more at one joint alone",
-    "near rest": "its exponent is the least that is searched: friction near rest, for which there is a law",
-    EXCHANGED: "taken, then exchanged: another one explains more with all values found anew",
-    SUPERFLUOUS: "taken, then superfluous beside the others",
-    STANDS_IN: "taken, then taken back: it stands in for something that the catalogue lacks",
-    SUSPECT: "taken, then taken back: it failed a check, see the suspects",
-    COARSE: "taken, then taken back: the positions are too coarse to tell it from others",
-}
-_SHOWN = 12  # candidates of a turn
-
-
-def _rankings(d: Diagnosis) -> list[tuple[str, list[Sequence[str]]]]:
-    """Heading and rows of every turn that had candidates."""
-    headings = ["Candidates", *["Candidates, with what was taken before"] * len(d.ranking)]
-    ranked = zip(headings, map(_ranked, d.ranking), strict=False)
-    return [(heading, rows) for heading, rows in ranked if rows]
-
-
-def _ranked(turn: Sequence[Ranked]) -> list[Sequence[str]]:
-    """The candidates of one turn with their evidence, the losing ones too."""
-    rows: list[Sequence[str]] = []
-    for r in turn[:_SHOWN]:
-        word = _REFUSED.get(r.refused, "taken" if r.taken else "passes every gate too")
-        gains = ["" if g is None or np.isnan(g) else f"{g:.1f}" for g in (r.cross_gain, r.expected_gain)]
-        rows.append((r.effect, place_of(r.joint), f"{r.delta_bic:.1f}", *gains, word))
-    return rows
+def report(d: Diagnosis) -> str:
+    """HTML that needs nothing beside it."""
+    free = d.test.prepared.input is None
+    replay = replayed(d)
+    return rendered(
+        "diagnosis.html.j2",
+        arm=d.arm.name,
+        verdict=d.verdict,
+        missing=missing(d),
+        reason=sentence(d.reason),
+        causes=[_cause(d, k) for k in range(len(d.causes))],
+        suspects=[_as_shown(d, c, f"suspect{k}") for k, c in enumerate(d.suspects)],
+        worth=sentence(worth(d)) if d.causes else "",
+        following=following(d),
+        arm_drawing=named_joints(d),
+        harms=harms(d),
+        assumptions=[*assumptions(d), *compared(d)],
+        remains=remains(d),
+        errors=_errors(d),
+        unit=d.errors.unit,
+        simulation=_simulation(d),
+        efforts=block(efforts(d)),
+        residuals=[(name, block(charts)) for name, charts in residuals(d).items()],
+        replay=block(replay) if replay else None,
+        rivals=rivals(d),
+        rankings=rankings(d.arm, d.ranking),
+        error_text=_ERRORS[free],
+        simulation_text=_SIMULATED[free],
+        parameters=[(name, f"{e.value:.6g}", f"{e.std:.2g}", e.unit) for name, e in d.parameters.items()],
+        hidden=d.not_identifiable,
+        experiment=described(d),
+        log=d.log.lines(),
+        records=[
+            (r["name"], r["use"], str(r["samples"]), f"{r['rate']:g}") for r in d.log.to_json()["records"]
+        ],
+        settings=[(name, _said(value)) for name, value in d.settings.items()],
+    )
 
 
 def _said(value: object) -> str:
@@ -157,25 +98,57 @@ def _said(value: object) -> str:
 
 
 def _cause(d: Diagnosis, k: int) -> dict[str, Any]:
+    """A cause for the page, with its law over the data."""
     c = d.causes[k]
+    size = law_size(d, k)
+    said = ""
+    if size is not None:
+        where = joint_names(d.arm)[judged_joint(d, k)]
+        sizes = f"{number(size[0], 2)} of the {number(size[1], 2)} {size[2]}"
+        said = f"Its size on the test record: {sizes} of {where} (RMS)."
+    return _as_shown(d, c, f"cause{k}") | {"size": said, "charts": block(law_charts(d, k))}
+
+
+def _as_shown(d: Diagnosis, c: NamedCause, key: str) -> dict[str, Any]:
+    """What the page says of a cause or a suspect."""
+    definition = CATALOGUE[c.effect]
+    meanings = {p.name: p.text for p in definition.accepted()}
     return {
+        "key": key,
         "effect": c.effect,
-        "text": CATALOGUE[c.effect].text,
-        "place": place_of(c.joint),
+        "title": at(d.arm, c.effect, c.joint),
+        "finding": sentence(finding(d.arm, c.effect, c.joint, c.parameters)),
+        "text": sentence(definition.text),
+        "law": law(c.effect),
         "parameters": [
-            (n, f"{e.value:.4g}", "" if np.isnan(e.std) else f"{e.std:.2g}", e.unit)
+            (
+                n,
+                f"{e.value:.4g}",
+                "" if np.isnan(e.std) else f"{e.std:.2g}",
+                "" if e.unit == "1" else e.unit,
+                meanings.get(n, ""),
+            )
             for n, e in c.parameters.items()
         ],
         "delta_bic": f"{c.delta_bic:.1f}",
         "gain": f"{c.cross_gain:.1f}",
         "expected": f"{c.expected_gain:.1f}",
         "share": _share(c),
-        "aliases": ", ".join(f"{e} ({place_of(j)})" for e, j in c.aliases),
-        "rivals": ", ".join(f"{e} ({place_of(j)}, {b:.1f} behind)" for e, j, b in c.ambiguous_with),
-        "checks": [checked(check) for check in c.checks],
-        "experiment": CATALOGUE[c.effect].experiment,
-        "reference": CATALOGUE[c.effect].reference,
+        "marks": [_mark(check) for check in c.checks],
+        "failed": [f"{x.name}: {x.text}" for x in c.checks if x.decides and x.passed is False],
+        "confused_with": ", ".join(definition.confused_with),
+        "experiment": sentence(definition.experiment),
+        "reference": definition.reference,
     }
+
+
+def _mark(c: Check) -> tuple[str, str, str, str]:
+    """Sign, class, name and figures of a check."""
+    name, _, text = checked(c)
+    sign, kind = ("–", "unasked") if c.passed is None else ("✓", "yes") if c.passed else ("✗", "no")
+    if not c.decides:
+        text += "; reported, decides nothing"
+    return sign, kind, name, text
 
 
 def _share(c: NamedCause) -> str:
@@ -189,34 +162,16 @@ def _share(c: NamedCause) -> str:
     return f"{size:.1f} % {word} error on the test record than without it ({low:.1f} to {high:.1f} %)"
 
 
-def _fit(d: Diagnosis) -> str:
-    f = d.lack_of_fit
-    if f is None:
-        return "No period repeats in the training records, so the noise could not be measured."
-    return (
-        f"Lack of fit over {f.periods} repeated periods: {f.statistic:.2f}, threshold {f.threshold:.2f} "
-        f"(1 for a complete model), {_where(d)}."
-    )
-
-
-def _where(d: Diagnosis) -> str:
-    """Place of the part that repeats most."""
-    f = d.lack_of_fit
-    assert f is not None
-    found = d.lack_of_fit_part
-    joint = f"joint {f.worst.joint + 1}"
-    return joint if found is None else f"{joint}, {found[0]} from {found[1]:.2f} to {found[2]:.2f} s"
-
-
 def _errors(d: Diagnosis) -> list[Sequence[str]]:
     e = d.errors
     return [
         (
-            str(j + 1),
-            f"{e.before[j]:.4g}",
-            f"{e.after[j]:.4g}",
-            f"{e.gain[j]:.1f}",
-            f"{e.low[j]:.1f} to {e.high[j]:.1f}",
+            joint_name(d.arm, j + 1),
+            number(e.before[j]),
+            number(e.after[j]),
+            Markup("{} <small>({} to {})</small>").format(
+                *(f"{x:.1f}" for x in (e.gain[j], e.low[j], e.high[j]))
+            ),
         )
         for j in range(len(e.before))
     ]
@@ -228,7 +183,7 @@ def _simulation(d: Diagnosis) -> list[Sequence[str]]:
         return []
     return [
         (
-            str(j + 1),
+            joint_name(d.arm, j + 1),
             f"{one.f_gof[j]:.2f}",
             f"{two.f_gof[j]:.2f}",
             f"{one.mae[j]:.3g}",

@@ -4,9 +4,11 @@ from __future__ import annotations
 
 import numpy as np
 
+from modelgen.charts import number
 from modelgen.diagnosis.result import Diagnosis
 from modelgen.diagnosis.validation import Check
 from modelgen.effects import CATALOGUE, Family
+from modelgen.report.words import at, finding, joint_name, joint_names, listed, sentence
 
 _SENTENCES = {
     "nothing_missing": "Nothing is missing that these records could show.",
@@ -18,6 +20,13 @@ _VISIBLE = 0.05  # percent: less is 0.0 in print
 _SAME = 0.01  # of an error or a cut-off, that needs no word
 
 
+def missing(d: Diagnosis) -> list[str]:
+    """What is missing, a sentence for each cause; one that says so where none is named."""
+    if d.verdict == "named":
+        return [sentence(finding(d.arm, c.effect, c.joint, c.parameters)) for c in d.causes]
+    return [unnamed(d)]
+
+
 def unnamed(d: Diagnosis) -> str:
     """The verdict where no cause is named."""
     if d.verdict == "outside_catalogue" and d.settings["asked"] != "all":
@@ -25,29 +34,39 @@ def unnamed(d: Diagnosis) -> str:
     return _SENTENCES[d.verdict]
 
 
+def headline(d: Diagnosis) -> str:
+    """The verdict in one sentence with what it is worth, or with its reason."""
+    if d.verdict == "named":
+        names = listed(at(d.arm, c.effect, c.joint) for c in d.causes)
+        return f"The model lacks {names}: {worth(d)}."
+    return f"{unnamed(d)} {sentence(d.reason)}"
+
+
 def worth(d: Diagnosis) -> str:
-    """What the causes are worth on the test record: over all joints, at the best and at the worst."""
-    gains = np.nan_to_num(d.errors.gain)
-    best, worst = int(np.argmax(gains)), int(np.argmin(gains))
-    if np.isnan(d.errors.overall):
+    """What the causes are worth on the test record, over all joints, and the worst joint where one lost."""
+    e, (low, high) = d.errors, d.errors.interval
+    worst = int(np.argmin(np.nan_to_num(e.gain)))
+    if np.isnan(e.overall):
         return "the test record cannot tell what that is worth"
-    said = "the test record is predicted no better"
-    if d.errors.overall >= _VISIBLE:
-        said = f"{d.errors.overall:.1f} % less error on the test record"
-        said += " over all joints" if len(gains) > 1 else ""
-    if gains[best] >= _VISIBLE and len(gains) > 1:
-        said += f", {gains[best]:.1f} % less at {place_of(best + 1)}"
-    if gains[worst] <= -_VISIBLE:
-        said += f", {-gains[worst]:.1f} % more at {place_of(worst + 1)}"
+    joints = " over all joints" if len(e.gain) > 1 else ""
+    interval = "" if np.isnan(low) else f" ({low:.1f} to {high:.1f} %)"
+    if e.overall >= _VISIBLE:
+        said = f"{e.overall:.1f} % less error on the test record{joints}{interval}"
+    elif e.overall <= -_VISIBLE:
+        said = f"the test record has {-e.overall:.1f} % more error{joints}"
+    else:
+        said = f"the test record is predicted no better{joints}"
+    if e.gain[worst] <= -_VISIBLE:
+        said += f", {-e.gain[worst]:.1f} % more at {joint_name(d.arm, worst + 1)}"
     doubted = [c for c in d.causes if any(k.name == "confirmed" and k.passed is False for k in c.checks)]
-    names = [f"{c.effect} at {place_of(c.joint)}" for c in doubted]
-    return said + (f"; that record does not confirm {' and '.join(names)}" if names else "")
+    names = [at(d.arm, c.effect, c.joint) for c in doubted]
+    return said + (f"; that record does not confirm {listed(names)}" if names else "")
 
 
 def harms(d: Diagnosis) -> list[str]:
     """Warnings about causes that make the test record worse."""
     return [
-        f"With {c.effect} at {place_of(c.joint)} the error on the test record is {-c.share.gain:.1f} % "
+        f"With {at(d.arm, c.effect, c.joint)} the error on the test record is {-c.share.gain:.1f} % "
         f"larger ({-c.share.high:.1f} to {-c.share.low:.1f} %): what was found does not carry over to that "
         f"record.{CATALOGUE[c.effect].caveat}"
         for c in d.causes
@@ -55,23 +74,64 @@ def harms(d: Diagnosis) -> list[str]:
     ]
 
 
+def remains(d: Diagnosis) -> str:
+    """What repeats in the residuals beside the noise, with its size where something deterministic is left."""
+    f = d.lack_of_fit
+    if f is None:
+        return "No period repeats in the training records, so the noise could not be measured."
+    where = joint_name(d.arm, f.worst.joint + 1)
+    part = d.lack_of_fit_part
+    if part is not None:
+        where += f", {part[0]} from {part[1]:.2f} to {part[2]:.2f} s"
+    said = (
+        f"Lack of fit over {f.periods} repeated periods: {f.statistic:.2f}, threshold {f.threshold:.2f} "
+        f"(1 for a complete model), largest at {where}."
+    )
+    return f"{said} {_size(d)}".rstrip() if f.found else said
+
+
+def _size(d: Diagnosis) -> str:
+    """About how large what is deterministic in the residuals of all rows is, of the effort, by joint.
+
+    Its mean square adds to the noise's, and k periods that repeat make (F - 1) / k of the noise's of it.
+    """
+    f, held = d.lack_of_fit, d.test
+    if f is None or held.prepared.input is None:
+        return ""
+    said = []
+    effort = held.effort * held.gain
+    for j, name in enumerate(joint_names(d.arm)):
+        moving = held.moving[:, j]
+        share = max(float(f.by_joint[j]) - 1.0, 0.0) / f.periods
+        if share and moving.any():
+            left = float(np.sqrt(np.mean(d.residuals[1][moving, j] ** 2) * share / (1.0 + share)))
+            whole = float(np.sqrt(np.mean(effort[moving, j] ** 2)))
+            said.append(f"{number(left, 2)} of {number(whole, 2)} {_unit(d, j)} at {name}")
+    return f"About {listed(said)} repeats (RMS)." if said else ""
+
+
+def _unit(d: Diagnosis, j: int) -> str:
+    units = d.test.prepared.effort_unit
+    return units[j] if j < len(units) else d.errors.unit
+
+
 def assumptions(d: Diagnosis) -> list[str]:
-    """Values taken from the description because no record shows them, what is missing there, and doubts."""
-    taken = [
-        f"The drive's inertia at {place_of(number)} is taken as {e.value:.3g} {e.unit}, what was identified "
-        "of drive and link together beyond the link's nominal inertials: stiffness and play are found with "
-        "it. A value under drive_inertia in the description is taken instead."
-        for number, e in d.inertias.items()
+    """Values of the description that no record shows, what is missing there, and doubts."""
+    used = [
+        f"The drive's inertia at {joint_name(d.arm, k)} is set to {e.value:.3g} {e.unit}, what was "
+        "identified of drive and link together beyond the link's nominal inertials: stiffness and play are "
+        "found with it. A value under drive_inertia in the description is used instead."
+        for k, e in d.inertias.items()
     ]
     compliant = {c.joint for c in d.causes if CATALOGUE[c.effect].family is Family.ELASTIC}
     unknown = [
-        f"The drive's inertia at {place_of(number)} is not told from the link's: the extended model "
-        "cannot be simulated, nor its forward dynamics used, until the description gives "
+        f"The drive's inertia at {joint_name(d.arm, k)} cannot be separated from the link's: the extended "
+        "model cannot be simulated, nor its forward dynamics used, until the description gives "
         "drive_inertia a value."
         for drive in d.after.model.grouping.drives
-        if drive.nominal is None and (number := d.arm.coordinates.index(drive.joint) + 1) in compliant
+        if drive.nominal is None and (k := d.arm.coordinates.index(drive.joint) + 1) in compliant
     ]
-    return taken + unknown + ([] if d.identified is None else list(d.identified.doubts))
+    return used + unknown + ([] if d.identified is None else list(d.identified.doubts))
 
 
 def compared(d: Diagnosis) -> list[str]:
@@ -97,7 +157,7 @@ def compared(d: Diagnosis) -> list[str]:
 def suspicions(d: Diagnosis) -> list[str]:
     """What has evidence and is not named, each with the check that it failed."""
     return [
-        f"Suspected: {c.effect} at {place_of(c.joint)}, evidence {c.delta_bic:.1f}. It is not named: "
+        f"Suspected: {at(d.arm, c.effect, c.joint)}, evidence {c.delta_bic:.1f}. It is not named: "
         + "; ".join(f"{name}, {text}" for name, mark, text in map(checked, c.checks) if mark == "no")
         + "."
         for c in d.suspects
@@ -115,6 +175,21 @@ def checked(c: Check) -> tuple[str, str, str]:
     return c.name, mark, c.text + figures
 
 
-def place_of(joint: int | None) -> str:
-    """Where an effect acts, in words."""
-    return "the whole arm" if joint is None else f"joint {joint}"
+def rivals(d: Diagnosis) -> list[tuple[str, str, str]]:
+    """Cause, rival and why it is not named, of every cause."""
+    found = []
+    for c in d.causes:
+        own = at(d.arm, c.effect, c.joint)
+        found += [
+            (own, at(d.arm, e, j), "no motion of this arm separates the two: it is named by convention")
+            for e, j in c.aliases
+        ]
+        found += [
+            (
+                own,
+                at(d.arm, e, j),
+                f"delta BIC {behind:.1f} behind: nearly as good, the next experiment separates them",
+            )
+            for e, j, behind in c.ambiguous_with
+        ]
+    return found

@@ -6,14 +6,16 @@ from typing import Any
 
 import numpy as np
 
+from modelgen.charts import Band, Chart, Curve, sheet
+from modelgen.description import Arm
 from modelgen.diagnosis.experiment import STEM, Experiment, differences
 from modelgen.diagnosis.result import Diagnosis
 from modelgen.excitation.writing import set_points, trajectory
-from modelgen.figures import COLOURS
-from modelgen.report.diagnosis_figures import inline
-from modelgen.report.figures import Sketch
+from modelgen.report.page import block
+from modelgen.report.words import at, joint_names
 
 NAMES = (f"{STEM}.csv", f"{STEM}_set_points.csv", f"{STEM}.svg")
+_LINES = 7  # looks of lines that are told apart
 
 
 def followed(e: Experiment) -> str:
@@ -27,52 +29,58 @@ def followed(e: Experiment) -> str:
     return f"{e.best}{said}"
 
 
-def described(e: Experiment | None, drawn: str) -> dict[str, Any] | None:
-    """For the page. drawn: its picture."""
+def described(d: Diagnosis) -> dict[str, Any] | None:
+    """For the page."""
+    e = d.next_experiment
     if e is None:
         return None
     return {
-        "separates": " from ".join(_place(effect, joint) for effect, joint in e.separates),
+        "separates": " from ".join(at(d.arm, effect, joint) for effect, joint in e.separates),
         "best": followed(e)[0].upper() + followed(e)[1:] + ".",
         "trajectory": _trajectory(e),
-        "pairs": _pairs(e),
-        "picture": "" if e.proposal is None else inline(drawn),
+        "pairs": _pairs(d.arm, e),
+        "charts": block(charts(d.arm, e)),
         "tests": [(t.text, "" if t.evidence is None else f"{t.evidence:.3g}") for t in e.tests],
     }
 
 
-def plans(d: Diagnosis, drawn: str) -> dict[str, str]:
-    """Files of the trajectory, by name; none where there is no trajectory. drawn: its picture."""
+def plans(d: Diagnosis) -> dict[str, str]:
+    """Files of the trajectory, by name; none where there is no trajectory."""
     e = d.next_experiment
     if e is None or e.proposal is None:
         return {}
     made = e.proposal.excitation
-    return dict(zip(NAMES, (trajectory(made), set_points(made), drawn), strict=True))
+    return dict(zip(NAMES, (trajectory(made), set_points(made), sheet(charts(d.arm, e), 2)), strict=True))
 
 
-def picture(e: Experiment) -> Sketch:
-    """The joints' positions over a period, and what a wrong cause would leave over."""
-    assert e.proposal is not None
+def charts(arm: Arm, e: Experiment) -> list[Chart]:
+    """Positions over a period, and the residual of every wrong cause; none without a trajectory."""
+    if e.proposal is None:
+        return []
     made, rows = e.proposal.excitation, e.proposal.rows
-    pairs = differences(e, e.proposal)
-    sketch = Sketch(1 + len(pairs), 1, (9.0, 2.0 * (1 + len(pairs))))
-    axes = sketch.axes()
+    names = joint_names(arm)
     q = made.signals["q"]
-    for k in range(q.shape[1]):
-        axes[0, 0].plot(made.t, q[:, k], color=COLOURS[k % len(COLOURS)], label=f"joint {k + 1}")
-    axes[0, 0].set_ylabel("position [rad, m]")
-    axes[0, 0].legend(loc="upper right", fontsize=7)
+    positions = [Curve(made.t, q[:, k], f"s{k % _LINES}", name) for k, name in enumerate(names)]
+    units = dict.fromkeys("m" if arm.joints[i].type == "prismatic" else "rad" for i in arm.coordinates)
+    found = [
+        Chart(
+            "the trajectory",
+            "time [s]",
+            f"position [{', '.join(units)}]",
+            positions,
+            "Positions of the joints over a period.",
+        )
+    ]
     period = made.problem.settings.period
     t = rows.prepared.t
     shown = (t >= period) & (t < 2 * period) if e.run > 1 else np.ones(len(t), dtype=bool)
-    for axis, (text, joint, left, noise) in zip(axes[1:, 0], pairs, strict=True):
-        axis.axhspan(-noise, noise, color="#dddddd", label="noise")
-        axis.plot(t[shown] - t[shown][0], left[shown], color=COLOURS[1])
-        axis.set_title(f"{text}: left over at joint {joint + 1}", fontsize=8)
-        axis.set_ylabel("input")
-        axis.legend(loc="upper right", fontsize=7)
-    axes[-1, 0].set_xlabel("time [s]")
-    return sketch
+    unit = rows.prepared.effort_unit
+    for text, joint, left, noise in differences(e, e.proposal):
+        curves = [Curve(t[shown] - t[shown][0], left[shown], "after", "residual of the wrong cause")]
+        y_label = f"residual at {names[joint]} [{unit[joint] if joint < len(unit) else 'A'}]"
+        bands = [Band(-noise, noise, "noise")]
+        found.append(Chart(text, "time [s]", y_label, curves, f"Residual: {text}.", bands))
+    return found
 
 
 def _trajectory(e: Experiment) -> str:
@@ -85,16 +93,16 @@ def _trajectory(e: Experiment) -> str:
         f"controller in motor coordinates; {100 * used:.0f} % of the tightest limit is used. The evidence is "
         f"that of {e.run} periods with the noise of the training records"
     )
-    text += "." if e.periods == e.run else f"; {e.periods} tell the causes apart."
+    text += "." if e.periods == e.run else f"; {e.periods} separate the causes."
     if e.assumed:
-        text += f" Not in the description, taken from the training records: {', '.join(e.assumed)}."
+        text += f" Not in the description, from the training records: {', '.join(e.assumed)}."
     return text
 
 
-def _pairs(e: Experiment) -> list[tuple[str, str, str]]:
+def _pairs(arm: Arm, e: Experiment) -> list[tuple[str, str, str]]:
     if e.proposal is None:
         return []
-    names = [_place(*h.candidate.place) for h in e.members]
+    names = [at(arm, *h.candidate.place) for h in e.members]
     count = range(len(names))
     return [
         (names[i], names[j], f"{e.proposal.evidence[i, j]:.3g}")
@@ -102,7 +110,3 @@ def _pairs(e: Experiment) -> list[tuple[str, str, str]]:
         for j in count
         if np.isfinite(e.proposal.evidence[i, j])
     ]
-
-
-def _place(effect: str, joint: int | None) -> str:
-    return effect if joint is None else f"{effect} at joint {joint}"

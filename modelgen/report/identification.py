@@ -15,7 +15,7 @@ from modelgen.identification import Identification, Validation
 from modelgen.identification.without_drives import Alternative
 from modelgen.numeric import Array
 from modelgen.report.arm_drawing import arm_drawing
-from modelgen.report.diagnosis_figures import inline
+from modelgen.report.page import inline
 from modelgen.resources import templates_folder
 
 AS_DESCRIBED = "the arm as described"

@@ -14,23 +14,19 @@ from modelgen.errors import InputError
 from modelgen.functions import Options
 from modelgen.functions.parameters_file import parameters_yaml
 from modelgen.generation import generate
-from modelgen.report.diagnosis import NEXT, pictures, report, sketches
+from modelgen.report.diagnosis import pictures, report
 from modelgen.report.experiment import NAMES, plans
-from modelgen.report.figures import Pen
 
 
-def write(d: Diagnosis, out: Path, *, code: bool = True, pen: Pen | None = None) -> None:
+def write(d: Diagnosis, out: Path, *, code: bool = True) -> None:
     """diagnosis.json, report.html, the extended description, its parameters and its code into `out`.
 
     All of them, or none.
 
-    code: False leaves the code out. pen: draws the pictures, a new one in this process by default. Raises
-    InputError.
+    code: False leaves the code out. Raises InputError.
     """
     name = d.arm.name
     new, there = out / ".new", out.exists()  # on the file system of `out`, whatever that is
-    pen, wanted = pen or Pen(), sketches(d)
-    pen.give(wanted)
     try:
         shutil.rmtree(new, ignore_errors=True)
         new.mkdir(parents=True)
@@ -44,9 +40,8 @@ def write(d: Diagnosis, out: Path, *, code: bool = True, pen: Pen | None = None)
             generate([arm], new / "generated", Options(identified=values), processes=1)
         text = json.dumps(to_json(d), indent=2, allow_nan=False) + "\n"
         (new / "diagnosis.json").write_text(text, encoding="utf-8", newline="\n")
-        drawn = {name: pen.fetch(name) for name in wanted}
-        (new / "report.html").write_text(report(d, drawn), encoding="utf-8", newline="\n")
-        for picture, text in {**pictures(drawn), **plans(d, drawn.get(NEXT, ""))}.items():
+        (new / "report.html").write_text(report(d), encoding="utf-8", newline="\n")
+        for picture, text in {**pictures(d), **plans(d)}.items():
             (new / picture).write_text(text, encoding="utf-8", newline="\n")
         for stale in NAMES:  # of a diagnosis before
             (out / stale).unlink(missing_ok=True)

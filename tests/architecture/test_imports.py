@@ -16,6 +16,7 @@ ORDER = (
     "resources",
     "jobs",
     "figures",
+    "charts",
     "graph",
     "native",
     "symbolic",

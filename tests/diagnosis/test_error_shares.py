@@ -46,7 +46,7 @@ def test_what_does_harm_there_is_said_and_kept() -> None:
     assert shares["torque_ripple"].high < 0.0 < shares["friction_offset"].low
     assert shares["torque_ripple"].gain == pytest.approx(found.errors.gain[0], rel=0.05)
     (said,) = harms(found)
-    assert "torque_ripple at joint 1" in said
+    assert "torque_ripple at j1" in said
     assert said in report(found)
     told = to_json(found)["error"]["by_cause"]
     assert [c["effect"] for c in told if c["gain_interval_percent"][1] < 0.0] == ["torque_ripple"]

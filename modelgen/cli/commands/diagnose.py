@@ -30,22 +30,19 @@ def diagnose(
     as_json: Json = False,
 ) -> None:
     """Name what the model gets wrong in logs, extend it by the cause, and measure the gain."""
+    from modelgen.api.diagnosis import diagnosed
     from modelgen.cli.arms import command, one
-    from modelgen.report.figures import Pen
+    from modelgen.cli.output import print_result, progress_bar
+    from modelgen.files import check_folder
+    from modelgen.generation.folders import check_output
 
     found = one(arms, arm)
-    with Pen(hands=0 if options.processes == 1 else 2) as pen:  # it gets ready while the rest is loaded
-        from modelgen.api.diagnosis import diagnosed
-        from modelgen.cli.output import print_result, progress_bar
-        from modelgen.files import check_folder
-        from modelgen.generation.folders import check_output
-
-        check_folder("--out", out)
-        check_output(out, [])
-        with progress_bar() as progress:
-            result = diagnosed(found, train, test or [], options, progress, pen)
-            progress("writing", 0, None)
-            result.write(out)
+    check_folder("--out", out)
+    check_output(out, [])
+    with progress_bar() as progress:
+        result = diagnosed(found, train, test or [], options, progress)
+        progress("writing", 0, None)
+        result.write(out)
     print_result(result, as_json=as_json)
     if not as_json:
         typer.echo(f"report: {out / 'report.html'}")

@@ -56,7 +56,10 @@ class NamedCause:
 
 @dataclass(frozen=True)
 class Errors:
-    """RMSE on the test record by joint (n,), in `unit`. gain: percent; low, high: its 95 % interval."""
+    """RMSE on the test record by joint (n,), in `unit`. gain: percent; low, high: its 95 % interval.
+
+    interval: that of `overall`.
+    """
 
     unit: str
     before: Array
@@ -64,6 +67,7 @@ class Errors:
     gain: Array
     low: Array
     high: Array
+    interval: tuple[float, float] = (float("nan"), float("nan"))
 
     @property
     def overall(self) -> float:

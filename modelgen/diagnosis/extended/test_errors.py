@@ -26,11 +26,10 @@ SEED = 1989
 def errors(rows: Rows, before: Array, after: Array, unit: str, limits: ExtendedThresholds) -> Errors:
     """Errors from residuals (M, n) in `unit`; rows that do not move do not count."""
     n = before.shape[1]
-    found = []
-    for j in range(n):
-        moving = rows.moving[:, j]
-        found.append(compared(before[moving, j], after[moving, j], limits))
-    return Errors(unit, *np.array(found).T)
+    moving = [rows.moving[:, j] for j in range(n)]
+    pairs = [(before[m, j], after[m, j]) for j, m in enumerate(moving)]
+    found = [compared(old, new, limits) for old, new in pairs]
+    return _errors(unit, np.array(found), overall_interval(pairs, limits))
 
 
 def motion_errors(
@@ -42,12 +41,20 @@ def motion_errors(
     """Errors of a free motion's simulated positions [rad, m]; not a number where one cannot be simulated."""
     n = record.n
     found = np.full((n, 5), np.nan)
+    interval = np.nan, np.nan
     joints = [] if record.arm is None else [record.arm.joints[i] for i in record.arm.coordinates]
     unit = ", ".join(dict.fromkeys("m" if j.type == "prismatic" else "rad" for j in joints)) or "rad"
     if before is not None and after is not None and before.simulated.shape == after.simulated.shape:
         old, new = ((s.simulated - s.measured).reshape(-1, n) for s in (before, after))
         found = np.array([compared(old[:, j], new[:, j], limits) for j in range(n)])
-    return Errors(unit, *found.T)
+        interval = overall_interval([(old[:, j], new[:, j]) for j in range(n)], limits)
+    return _errors(unit, found, interval)
+
+
+def _errors(unit: str, found: Array, interval: tuple[float, float]) -> Errors:
+    """From rows of before, after, gain, low and high, one for each joint."""
+    before, after, gain, low, high = found.T
+    return Errors(unit, before, after, gain, low, high, interval)
 
 
 def compared(before: Array, after: Array, limits: ExtendedThresholds) -> tuple[float, ...]:
@@ -55,15 +62,34 @@ def compared(before: Array, after: Array, limits: ExtendedThresholds) -> tuple[f
     count = limits.bootstrap_blocks
     if len(before) < count:
         return (np.nan,) * 5
+    old, new = np.sqrt((before**2).mean()), np.sqrt((after**2).mean())
+    gains = 100 * (1 - np.sqrt(_ratios(before, after, count)))
+    low, high = np.quantile(gains, limits.interval_quantiles)
+    return float(old), float(new), float(100 * (1 - new / old)), float(low), float(high)
+
+
+def overall_interval(pairs: Sequence[tuple[Array, Array]], limits: ExtendedThresholds) -> tuple[float, float]:
+    """Interval of the gain over all joints, in percent, from each joint's errors before and after.
+
+    The joints' blocks are drawn together: what disturbs one may disturb all.
+    """
+    count = limits.bootstrap_blocks
+    known = [(a, b) for a, b in pairs if len(a) >= count and a.any()]
+    if not known:
+        return float("nan"), float("nan")
+    ratios = np.mean([_ratios(a, b, count) for a, b in known], axis=0)
+    low, high = np.quantile(100 * (1 - np.sqrt(ratios)), limits.interval_quantiles)
+    return float(low), float(high)
+
+
+def _ratios(before: Array, after: Array, count: int) -> Array:
+    """Mean squares after over before, of as many draws of blocks; the same blocks whatever the errors."""
     random = np.random.default_rng(SEED)
     a, b = before**2, after**2
-    old, new = np.sqrt(a.mean()), np.sqrt(b.mean())
     parts = np.array_split(np.arange(len(a)), count)
     sums = np.array([[a[p].sum(), b[p].sum()] for p in parts])
     drawn = sums[random.integers(count, size=(DRAWS, count))].sum(axis=1)
-    gains = 100 * (1 - np.sqrt(drawn[:, 1] / drawn[:, 0]))
-    low, high = np.quantile(gains, limits.interval_quantiles)
-    return float(old), float(new), float(100 * (1 - new / old)), float(low), float(high)
+    return np.asarray(drawn[:, 1] / drawn[:, 0])
 
 
 def shares(extension: Extension, test: Rows) -> list[Share]:

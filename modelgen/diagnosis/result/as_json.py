@@ -51,6 +51,8 @@ def to_json(d: Diagnosis) -> dict[str, Any]:
             "gain_interval_percent": [
                 [rounded(a), rounded(b)] for a, b in zip(d.errors.low, d.errors.high, strict=True)
             ],
+            "overall_gain_percent": rounded(d.errors.overall),
+            "overall_gain_interval_percent": numbers(np.array(d.errors.interval)),
             "with_rest": None if d.identified is None else numbers(d.identified.rmse),
             "by_cause": [
                 {

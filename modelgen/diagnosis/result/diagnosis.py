@@ -41,9 +41,10 @@ class Diagnosis:
     the arm with the causes, fitted to the training records; simulation: of the test record with either; test:
     rows of the test record; ranking: candidates with evidence by step, best first; added: effects that the
     description is extended by, each with its joint and values; residuals: (M, n) before and after, as the log
-    has its efforts; suspects: what has evidence and failed a check that decides; inertias: of drives before
-    elastic joints and play by coordinate (from 1); log: facts of the records; identified: what identify
-    has, None for free motions.
+    has its efforts; laws: (M, n) of each cause, what it alone adds to these, empty where it cannot be
+    computed; suspects: what has evidence and failed a check that decides; inertias: of drives before elastic
+    joints and play by coordinate (from 1); log: facts of the records; identified: what identify has, None for
+    free motions.
     """
 
     arm: Arm
@@ -70,3 +71,4 @@ class Diagnosis:
     suspects: tuple[NamedCause, ...] = ()
     positions: Positions | None = None
     inertias: Mapping[int, Estimate] = field(default_factory=dict)
+    laws: tuple[Array, ...] = ()

@@ -5,12 +5,14 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import replace
 
+import numpy as np
+
 from modelgen.dataset import Settings, choose
 from modelgen.dataset.inspection import inspect_records
 from modelgen.description import Arm
 from modelgen.diagnosis.adequacy import confirmed, place
 from modelgen.diagnosis.decision import Decision
-from modelgen.diagnosis.equations import Study
+from modelgen.diagnosis.equations import Rows, Study
 from modelgen.diagnosis.extended import (
     Estimate,
     Extension,
@@ -35,6 +37,7 @@ from modelgen.diagnosis.validation import Check
 from modelgen.errors import InputError
 from modelgen.identification.doubts import doubts
 from modelgen.identification.identify import errors_of
+from modelgen.numeric import Array
 
 
 def reported(study: Study, decision: Decision, extension: Extension, options: Options) -> Diagnosis:
@@ -73,6 +76,7 @@ def reported(study: Study, decision: Decision, extension: Extension, options: Op
         next_experiment=None,
         test=test,
         residuals=pair,
+        laws=tuple(_law(c, test, extension) for c in selection.causes),
         ranking=selection.turns,
         added=added,
         identified=_identified(study, decision, extension),
@@ -87,6 +91,17 @@ def reported(study: Study, decision: Decision, extension: Extension, options: Op
         positions=Positions(decision.remains.feigned, decision.correlated),
         inertias=extension.inertias,
     )
+
+
+def _law(cause: Cause, test: Rows, extension: Extension) -> Array:
+    """What a cause alone adds to the efforts of the test record (M, n); empty where it cannot stand there."""
+    trial, evaluator = cause.trial, extension.equations.evaluator
+    try:
+        added = evaluator.contribution(*trial.candidate.place, test.motion, trial.parameters, extension.base)
+    except InputError:
+        return np.zeros((0, 0))
+    found = added[test.prepared.rows] * test.gain
+    return found if np.isfinite(found).all() else np.zeros((0, 0))
 
 
 def _identified(study: Study, decision: Decision, extension: Extension) -> AsIdentified | None:

@@ -138,6 +138,7 @@ class JointFlexibility(Compliance):
     name = "joint_flexibility"
     seen_over = "position"
     text = "elastic transmission between drive and link"
+    finding = "the transmission of {joint} is elastic"
     reference = "Spong 1987"
     nonlinear = (STIFFNESS, DAMPING)
 
@@ -161,6 +162,7 @@ class Backlash(Compliance):
     name = "backlash"
     seen_over = "position"
     text = "play between drive and link"
+    finding = "there is play between {drive} and its link"
     reference = "Nordin and Gutman 2002"
     nonlinear = (
         Parameter(

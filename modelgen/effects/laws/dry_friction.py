@@ -29,6 +29,7 @@ class StribeckFriction(Friction):
 
     name = "stribeck_friction"
     text = "dry friction in excess of Coulomb's at low speed"
+    finding = "dry friction in {drive} is larger at low speed"
     reference = "Stribeck 1902; Bo and Pavelescu 1982"
     varies = (CoulombFriction,)
     linear = (Parameter("magnitude", "{f}", "excess of static over Coulomb friction", "FS"),)
@@ -68,6 +69,7 @@ class LoadDependentFriction(Friction):
     name = "load_dependent_friction"
     seen_over = "position"
     text = "dry friction in proportion to the load that the transmission carries"
+    finding = "friction in {drive} grows with the load: {coefficient:%} of it"
     reference = "Gogoussis and Donath 1988; Hamon, Gautier and Garrec 2010"
     varies = (CoulombFriction,)
     linear = (Parameter("coefficient", "1", "friction per load", "FL"),)
@@ -114,6 +116,7 @@ class PositionDependentFriction(Friction):
     name = "position_dependent_friction"
     seen_over = "position"
     text = "dry friction that changes with the joint coordinate"
+    finding = "friction in {drive} changes with the position"
     reference = "Armstrong 1988; Popovic and Goldenberg 1998"
     varies = (CoulombFriction,)
     linear = (
@@ -143,6 +146,7 @@ class FrictionWarmUp(Friction):
     name = "friction_warm_up"
     seen_over = "time"
     text = "friction that falls as the drive's own motion warms it up, from a cold start"
+    finding = "friction in {drive} falls as the drive warms up"
     reference = "Bittencourt and Gunnarsson 2012; Simoni, Beschi, Legnani and Visioli 2015"
     varies = (CoulombFriction, ViscousFriction)
     linear = (
@@ -205,6 +209,7 @@ class Presliding(Friction):
 
     name = "presliding"
     text = "dry friction that builds up over a distance after a reversal"
+    finding = "friction in {drive} builds up over a distance after each reversal"
     reference = "Dahl 1968"
     varies = (CoulombFriction,)
     linear = (Parameter("magnitude", "{f}", "friction once it has built up", "FD"),)

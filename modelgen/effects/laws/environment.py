@@ -63,6 +63,7 @@ class FluidDrag(Strips):
 
     name = "fluid_drag"
     text = "drag of the fluid on slender links, quadratic in the speed across them"
+    finding = "a fluid drags on {place}"
     reference = "Morison, Johnson and Schaaf 1950; Levesque and Richard 1994"
     linear = (
         Parameter("coefficient", "N s^2/m^3", "half density, drag coefficient and width together", "CD"),
@@ -83,6 +84,7 @@ class AddedMass(Strips):
     name = "added_mass"
     seen_over = "acceleration"
     text = "fluid that slender links accelerate with them, across their line"
+    finding = "{place} accelerates fluid around it"
     reference = "Kirchhoff 1870; Fossen 2011"
     linear = (Parameter("per_length", "kg/m", "mass of the fluid by length of the link", "CM"),)
     confused_with = ("payload_change", "fluid_drag")
@@ -112,6 +114,7 @@ class PayloadChange(LinkEffect):
     name = "payload_change"
     seen_over = "position"
     text = "a payload besides the one that the parameters hold, as a point mass on the link"
+    finding = "the load carried by {place} has changed by {mass}"
     reference = "Khalil, Gautier and Lemoine 2007"
     nonlinear = (
         Parameter("mass", "kg", "mass of the payload", bounds=ANY),
@@ -196,6 +199,7 @@ class BaseTilt(DescriptionEffect):
     name = "base_tilt"
     seen_over = "position"
     text = "base turned about its x, then its y axis, against the described direction of gravity"
+    finding = "the base is tilted against the described gravity"
     reference = "Ayusawa, Venture and Nakamura 2014"
     scope = "arm"
     nonlinear = (_turn("x"), _turn("y"), _turn("z"))

@@ -25,6 +25,7 @@ class EncoderOffset(DescriptionEffect):
     name = "encoder_offset"
     seen_over = "position"
     text = "true coordinate of the joint less the reading"
+    finding = "the encoder of {joint} is off by {offset}"
     reference = "Hollerbach, Khalil and Gautier 2016"
     nonlinear = (
         Parameter("offset", "{x}", "true coordinate less the reading", bounds=ANY, step=1e-4, usual=0.02),
@@ -60,6 +61,7 @@ class LeverGeometry(DescriptionEffect):
     name = "lever_geometry"
     seen_over = "position"
     text = "true lengths of the lever less the described ones"
+    finding = "the lever of {joint} has other lengths than described"
     reference = "Leborne, Creuze, Chemori and Brignone 2018"
     nonlinear = (
         _length("l1", "true l1 less the described one"),
@@ -105,6 +107,7 @@ class DriveGainError(DescriptionEffect):
     name = "drive_gain_error"
     seen_over = "position"
     text = "relative error of one joint's torque constant"
+    finding = "the torque constant of {drive} is off by {error:%}"
     reference = "Gautier and Briot 2014"
     nonlinear = (
         Parameter(
@@ -154,6 +157,7 @@ class TorqueConstantSaturation(InputEffect):
     name = "torque_constant_saturation"
     seen_over = "position"
     text = "torque constant that falls with the square of the current"
+    finding = "the torque constant of {drive} falls with the current"
     reference = "Gautier and Briot 2014"
     nonlinear = (
         Parameter(
@@ -187,6 +191,7 @@ class TimeDelay(InputEffect):
 
     name = "time_delay"
     text = "time by which the effort comes after the logged input"
+    finding = "the effort of {place} comes {delay} after the logged input"
     reference = "Swevers, Verdonck and De Schutter 2007"
     scope = "either"
     nonlinear = (

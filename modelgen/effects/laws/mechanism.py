@@ -29,6 +29,7 @@ class DriveInertia(Effect):
     name = "drive_inertia"
     seen_over = "acceleration"
     text = "inertia of motor, gears and screw, at the motor coordinate"
+    finding = "{drive} has an inertia of its own"
     reference = "Leborne, Creuze, Chemori and Brignone 2018, (16)"
     of_rotor = True
     linear = (Parameter("inertia", "{f} s^2/{x}", "inertia of the drive", "IA"),)
@@ -48,6 +49,7 @@ class Spring(Effect):
     name = "spring"
     seen_over = "position"
     text = "passive spring at the joint, with its angle or place of rest"
+    finding = "a spring acts at {joint}"
     reference = "Klimchik, Caro, Furet and Pashkevich 2013"
     side = "joint"
     linear = (
@@ -96,6 +98,7 @@ class TorqueRipple(Effect):
     name = "torque_ripple"
     seen_over = "position"
     text = "force that repeats with the motor's angle: cogging, an eccentric screw"
+    finding = "a force in {drive} repeats with the motor's angle"
     reference = "Tuttle and Seering 1996; Gandhi, Ghorbel and Dabney 2002"
     linear = (
         Parameter("sine", "{f}", "amplitude of the sine", "RS", bounds=ANY),
@@ -163,6 +166,7 @@ class TransmissionCoupling(Effect):
 
     name = "transmission_coupling"
     text = "inertia and friction of a part that turns with this joint and with another"
+    finding = "a part of the transmission turns with {joint} and another joint"
     reference = "Gautier and Janot 2013; Khalil and Dombre 2002, chapter 9"
     place = "pair"
     linear = (
@@ -217,6 +221,7 @@ class ActuatorMass(BodyEffect):
     name = "actuator_mass"
     seen_over = "position"
     text = "swing and weight of a linear actuator about its base"
+    finding = "the linear actuator of {joint} has a mass that swings with it"
     reference = "Khalil and Dombre 2002, chapter 10; Leborne, Creuze, Chemori and Brignone 2018"
     linear = (
         Parameter("inertia", "kg m^2", "inertia of the actuator about its base", "JS"),

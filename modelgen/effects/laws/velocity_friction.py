@@ -53,6 +53,7 @@ class ViscousFriction(Effect):
 
     name = "viscous_friction"
     text = "friction in proportion to speed"
+    finding = "friction in {drive} grows with the speed"
     reference = "Armstrong-Helouvry, Dupont and Canudas de Wit 1994"
     linear = (Parameter("coefficient", "{f} s/{x}", "viscous friction coefficient", "FV"),)
     confused_with = ("nonlinear_viscous_friction", "fluid_drag")
@@ -70,6 +71,7 @@ class CoulombFriction(Effect):
 
     name = "coulomb_friction"
     text = "dry friction of constant magnitude against the motion"
+    finding = "there is dry friction in {drive}"
     reference = "Armstrong-Helouvry, Dupont and Canudas de Wit 1994"
     linear = (Parameter("magnitude", "{f}", "Coulomb friction", "FC"),)
     confused_with = ("friction_offset", "presliding", "backlash")
@@ -94,6 +96,7 @@ class FrictionOffset(Effect):
     name = "friction_offset"
     seen_over = "position"
     text = "constant force while moving: asymmetric Coulomb friction or an offset of the current"
+    finding = "a constant force acts in {drive} while it moves"
     reference = "Khalil and Dombre 2002"
     exact = True
     confused_with = ("asymmetric_viscous_friction", "spring", "base_tilt")
@@ -127,6 +130,7 @@ class AsymmetricViscousFriction(Effect):
 
     name = "asymmetric_viscous_friction"
     text = "viscous friction of different size in the two directions"
+    finding = "viscous friction in {drive} differs between the two directions"
     reference = "Elhami and Brookfield 1996"
     varies = (ViscousFriction,)
     linear = (Parameter("coefficient", "{f} s/{x}", "half the difference of the two", "FA", bounds=ANY),)
@@ -144,6 +148,7 @@ class NonlinearViscousFriction(Friction):
 
     name = "nonlinear_viscous_friction"
     text = "friction in proportion to a power of the speed, besides the viscous one"
+    finding = "friction in {drive} does not grow in proportion to the speed"
     reference = "Grotjahn, Daemi and Heimann 2001; Wolf and Iskandar 2018"
     varies = (ViscousFriction,)
     linear = (Parameter("coefficient", "{f}", "friction at the speed `scale`", "FN", bounds=ANY),)

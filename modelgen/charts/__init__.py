@@ -1,0 +1,21 @@
+"""Charts as SVG: light enough to draw by the dozen, legible at any width, in the colours of their page."""
+
+from modelgen.charts.chart import ROLES, Band, Chart, Curve, labels
+from modelgen.charts.drawn import drawn
+from modelgen.charts.intervals import Interval, intervals
+from modelgen.charts.sheet import sheet
+from modelgen.charts.ticks import number, ticks
+
+__all__ = [
+    "ROLES",
+    "Band",
+    "Chart",
+    "Curve",
+    "Interval",
+    "drawn",
+    "intervals",
+    "labels",
+    "number",
+    "sheet",
+    "ticks",
+]

@@ -1,0 +1,81 @@
+"""What a chart shows."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from modelgen.numeric import Array
+
+# What a curve is decides its look: colour, width and dashes stand in the style of the page.
+ROLES = ("measured", "before", "after", "law", "noise", "s0", "s1", "s2", "s3", "s4", "s5", "s6")
+
+
+@dataclass(frozen=True)
+class Curve:
+    """x, y: (N,), not a number where the line is broken. role: one of ROLES. dots: points without a line."""
+
+    x: Array
+    y: Array
+    role: str
+    label: str = ""
+    dots: bool = False
+
+
+@dataclass(frozen=True)
+class Band:
+    """A strip over the whole width between two ordinates."""
+
+    low: float
+    high: float
+    label: str = ""
+
+
+@dataclass(frozen=True)
+class Chart:
+    """One panel. x_label, y_label: with the unit in brackets. text: what it shows, for who cannot see it.
+
+    zoom: the page lets its abscissa be enlarged. y_range: of the ordinate; by default what the curves span.
+    """
+
+    title: str
+    x_label: str
+    y_label: str
+    curves: Sequence[Curve]
+    text: str = ""
+    bands: Sequence[Band] = ()
+    zoom: bool = False
+    y_range: tuple[float, float] | None = None
+
+    def spans(self) -> tuple[tuple[float, float], tuple[float, float]]:
+        """Lowest and highest abscissa and ordinate of what is finite, apart where they are one."""
+        x = [c.x for c in self.curves]
+        y = [c.y for c in self.curves] + [np.array([b.low, b.high]) for b in self.bands]
+        return _span(x, 0.0), self.y_range or _span(y, 0.05)
+
+
+def labels(charts: Sequence[Chart]) -> list[tuple[str, str, bool]]:
+    """Role, label and whether it is dots of everything that has a label, once each."""
+    found: dict[tuple[str, str, bool], None] = {}
+    for chart in charts:
+        for band in chart.bands:
+            if band.label:
+                found["noise", band.label, False] = None
+        for curve in chart.curves:
+            if curve.label:
+                found[curve.role, curve.label, curve.dots] = None
+    return list(found)
+
+
+def _span(values: Sequence[Array], margin: float) -> tuple[float, float]:
+    every = np.concatenate([np.ravel(v) for v in values]) if values else np.zeros(0)
+    finite = every[np.isfinite(every)]
+    if not len(finite):
+        return 0.0, 1.0
+    low, high = float(finite.min()), float(finite.max())
+    if high - low <= 1e-12 * max(abs(low), abs(high)):
+        half = 0.5 * abs(low) or 0.5
+        return low - half, high + half
+    return low - margin * (high - low), high + margin * (high - low)

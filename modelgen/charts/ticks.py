@@ -1,0 +1,36 @@
+"""Round numbers along an axis."""
+
+from __future__ import annotations
+
+import math
+
+_LARGE, _SMALL = 1e5, 1e-4  # beyond which numbers are written with an exponent
+
+
+def ticks(low: float, high: float, about: int) -> list[float]:
+    """Multiples of 1, 2 or 5 times a power of ten within [low, high], about that many."""
+    rough = (high - low) / max(about, 1)
+    power = 10.0 ** math.floor(math.log10(rough))
+    step = next(m * power for m in (1.0, 2.0, 5.0, 10.0) if m * power >= rough * 0.999)
+    first, last = math.ceil(low / step - 1e-9), math.floor(high / step + 1e-9)
+    return [k * step for k in range(first, last + 1)]
+
+
+def written(values: list[float]) -> list[str]:
+    """Numbers of one axis with as many digits as tell them apart."""
+    if len(values) < 2:
+        return [f"{v:.3g}" for v in values]
+    step, most = values[1] - values[0], max(map(abs, values))
+    if most >= 100 * _LARGE or most < 10 * _SMALL:
+        return [f"{0.0 if abs(v) < 0.5 * step else v:.3g}" for v in values]
+    digits = max(0, -math.floor(math.log10(step) + 1e-9))
+    return [f"{0.0 if abs(v) < 0.5 * step else v:.{digits}f}" for v in values]
+
+
+def number(value: float, digits: int = 3) -> str:
+    """A number in a sentence: significant digits, no exponent where that can be read without."""
+    if value == 0.0 or not math.isfinite(value):
+        return f"{value:g}"
+    if not _SMALL <= abs(value) < _LARGE:
+        return f"{value:.{digits}g}"
+    return f"{value:.{max(0, digits - 1 - math.floor(math.log10(abs(value))))}f}"

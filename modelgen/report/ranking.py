@@ -1,0 +1,45 @@
+"""The candidates of every turn, with why each is no cause."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from modelgen.description import Arm
+from modelgen.diagnosis.selection import COARSE, EXCHANGED, STANDS_IN, SUPERFLUOUS, SUSPECT, History, Ranked
+from modelgen.report.words import place_of
+
+# Why a candidate is no cause, by the condition that it missed, or why it did not stay one.
+_REFUSED = {
+    "evidence": "too little evidence",
+    "values": "values that the effect cannot have",
+    "gain": "gains too little on records that its fit has not seen",
+    "positions": "gains no more than errors of the positions could feign",
+    "other joints": "makes other joints worse",
+    "one joint": "does more at one joint alone",
+    "near rest": "its exponent is the least that is searched: friction near rest, for which there is a law",
+    EXCHANGED: "chosen, then exchanged: another one explains more with all values found anew",
+    SUPERFLUOUS: "chosen, then superfluous beside the others",
+    STANDS_IN: "chosen, then dropped: it imitates something that the catalogue lacks",
+    SUSPECT: "chosen, then dropped: it failed a check, see the suspects",
+    COARSE: "chosen, then dropped: the positions are too coarse to separate it from others",
+}
+_SHOWN = 12  # candidates of a turn
+
+
+def rankings(arm: Arm, turns: History) -> list[tuple[str, list[Sequence[str]]]]:
+    """Heading and rows of every turn that had candidates."""
+    headings = ["Candidates", *[f"Candidates beside what turn {k} chose" for k in range(1, len(turns) + 1)]]
+    ranked = zip(headings, (_rows(arm, turn) for turn in turns), strict=False)
+    return [(heading, rows) for heading, rows in ranked if rows]
+
+
+def _rows(arm: Arm, turn: Sequence[Ranked]) -> list[Sequence[str]]:
+    """The candidates of one turn with their evidence, the losing ones too."""
+    rows: list[Sequence[str]] = []
+    for r in turn[:_SHOWN]:
+        word = _REFUSED.get(r.refused, "chosen" if r.taken else "meets every condition too")
+        gains = ["" if g is None or np.isnan(g) else f"{g:.1f}" for g in (r.cross_gain, r.expected_gain)]
+        rows.append((r.effect, place_of(arm, r.joint), f"{r.delta_bic:.1f}", *gains, word))
+    return rows

@@ -1,0 +1,100 @@
+"""Joints by their names, values in the units that people use, causes as clauses."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from typing import Any
+
+import numpy as np
+
+from modelgen.charts import number
+from modelgen.description import Arm
+from modelgen.effects import CATALOGUE
+
+
+class Said(float):
+    """A value with its unit, as a sentence has it: angles in degrees, short times in ms, small lengths in mm.
+
+    The format "%" makes percent of it.
+    """
+
+    unit: str
+
+    def __new__(cls, value: float, unit: str) -> Said:
+        """Make one of a value and its unit."""
+        made = super().__new__(cls, value)
+        made.unit = unit
+        return made
+
+    def __format__(self, spec: str) -> str:
+        value = float(self)
+        if spec == "%":
+            return f"{number(100.0 * value, 2)} %"
+        if self.unit == "rad":
+            return f"{number(np.degrees(value), 2)} deg"
+        if self.unit == "s" and abs(value) < 1.0:
+            return f"{number(1e3 * value, 2)} ms"
+        if self.unit == "m" and abs(value) < 0.1:
+            return f"{number(1e3 * value, 2)} mm"
+        return sized(value, self.unit)
+
+
+def sized(value: float, unit: str, digits: int = 2) -> str:
+    """A number with its unit; "1" is none."""
+    return f"{number(value, digits)} {'' if unit == '1' else unit}".rstrip()
+
+
+def joint_name(arm: Arm, number: int) -> str:
+    """Name of a coordinate, which counts from 1."""
+    return arm.joints[arm.coordinates[number - 1]].name
+
+
+def joint_names(arm: Arm) -> list[str]:
+    """Names of the coordinates."""
+    return [arm.joints[i].name for i in arm.coordinates]
+
+
+def place_of(arm: Arm, joint: int | None) -> str:
+    """Where an effect acts: the joint's name, or the whole arm."""
+    return "the whole arm" if joint is None else joint_name(arm, joint)
+
+
+def at(arm: Arm, effect: str, joint: int | None) -> str:
+    """An effect and where it acts, by its name in the catalogue."""
+    return f"{effect} {'of the whole arm' if joint is None else f'at {joint_name(arm, joint)}'}"
+
+
+def finding(arm: Arm, effect: str, joint: int | None, parameters: Mapping[str, Any]) -> str:
+    """The clause that says what is there, with its values. parameters: value and unit by name."""
+    definition, place = CATALOGUE[effect], place_of(arm, joint)
+    values = {name: Said(e.value, e.unit) for name, e in parameters.items()}
+    drive = f"the drive of {place}"
+    try:
+        return definition.finding.format(joint=place, place=place, drive=drive, **values) or at(
+            arm, effect, joint
+        )
+    except KeyError:  # a form of it without that value
+        return f"{definition.text} acts at {place}"
+
+
+def sentence(clause: str) -> str:
+    """With a capital letter and a full stop."""
+    return f"{clause[:1].upper()}{clause[1:]}{'' if clause.endswith(('.', '?')) else '.'}"
+
+
+def listed(words: Iterable[str]) -> str:
+    """Words with commas and an "and"."""
+    every: Sequence[str] = list(words)
+    return " and ".join([", ".join(every[:-1]), every[-1]] if len(every) > 1 else every)
+
+
+def law(effect: str) -> str:
+    """The law of an effect as its definition states it, empty where it states none."""
+    definition = CATALOGUE[effect]
+    for name in ("law", "force", "changed", "effective"):
+        method = definition.__dict__.get(name) or getattr(definition, name, None)
+        text = getattr(method, "__doc__", None)
+        if text:
+            first = text.strip().splitlines()[0]
+            return first if first.endswith(".") else f"{first}."
+    return ""

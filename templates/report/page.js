@@ -1,0 +1,98 @@
+"use strict";
+// Copies a command.
+for (const pre of document.querySelectorAll("pre")) {
+  const button = document.createElement("button");
+  button.type = "button";
+  button.textContent = "Copy";
+  button.addEventListener("click", async () => {
+    const text = pre.querySelector("code").textContent;
+    try {
+      await navigator.clipboard.writeText(text);
+    } catch {  // a page from a file may not
+      const range = document.createRange();
+      range.selectNodeContents(pre.querySelector("code"));
+      getSelection().removeAllRanges();
+      getSelection().addRange(range);
+      document.execCommand("copy");
+    }
+    button.textContent = "Copied";
+  });
+  pre.append(button);
+}
+
+// What is folded away on the screen is on paper.
+addEventListener("beforeprint", () => {
+  for (const one of document.querySelectorAll("details:not(.screen)")) one.open = true;
+});
+document.addEventListener("keydown", e => {
+  if (e.key === "Escape") document.activeElement.closest(".marks")?.ownerDocument.activeElement.blur();
+});
+
+// Enlarges the abscissae of the charts that belong together.
+function steps(low, high, about) {
+  const rough = (high - low) / about, power = 10 ** Math.floor(Math.log10(rough));
+  const step = [1, 2, 5, 10].map(m => m * power).find(s => s >= rough * 0.999);
+  const digits = Math.max(0, -Math.floor(Math.log10(step) + 1e-9)), found = [];
+  for (let k = Math.ceil(low / step - 1e-9); k * step <= high + 1e-9 * step; k++) found.push([k * step, (k * step).toFixed(digits)]);
+  return found;
+}
+for (const group of document.querySelectorAll(".zooming")) {
+  const charts = [...group.querySelectorAll("svg[data-zoom]")].map(svg => {
+    const [x0, x1, left, wide] = svg.dataset.zoom.split(" ").map(Number);
+    return {svg, x0, x1, left, wide, axis: svg.querySelector(".abscissa"), curves: svg.querySelector(".curves")};
+  });
+  if (!charts.length) continue;
+  const panel = group.querySelector(".zoom"), said = panel.querySelector("output");
+  let from = 0, to = 1;
+  function show() {
+    for (const c of charts) {
+      const scale = 1 / (to - from), low = c.x0 + from * (c.x1 - c.x0), high = c.x0 + to * (c.x1 - c.x0);
+      c.curves.setAttribute("transform", `translate(${-from * scale * c.wide} 0) scale(${scale} 1)`);
+      const grid = c.axis.querySelector(".grid"), tick = c.axis.querySelector(".tick");
+      const lines = [], words = [];
+      for (const [value, word] of steps(low, high, 6)) {
+        const at = c.left + (value - low) / (high - low) * c.wide;
+        const line = grid.cloneNode(), text = tick.cloneNode(true);
+        line.setAttribute("d", line.getAttribute("d").replace(/^M[^ ]+/, `M${at.toFixed(1)}`));
+        text.setAttribute("x", at.toFixed(1));
+        text.textContent = word;
+        lines.push(line);
+        words.push(text);
+      }
+      if (lines.length) c.axis.replaceChildren(...lines, ...words);
+    }
+    const c = charts[0], at = share => (c.x0 + share * (c.x1 - c.x0)).toFixed(2);
+    said.textContent = `${at(from)} to ${at(to)} s`;
+  }
+  function set(a, b) {
+    const wide = Math.min(1, Math.max(b - a, 0.002));
+    from = Math.min(Math.max(a, 0), 1 - wide);
+    to = from + wide;
+    show();
+  }
+  const actions = {
+    in: () => set(from + (to - from) / 4, to - (to - from) / 4),
+    out: () => set(from - (to - from) / 2, to + (to - from) / 2),
+    back: () => set(from - (to - from) / 2, to - (to - from) / 2),
+    on: () => set(from + (to - from) / 2, to + (to - from) / 2),
+    all: () => set(0, 1),
+  };
+  for (const button of panel.querySelectorAll("button")) button.addEventListener("click", actions[button.value]);
+  for (const c of charts) {
+    let start = null;
+    const share = e => {
+      const box = c.svg.getBoundingClientRect(), x = (e.clientX - box.left) / box.width * c.svg.viewBox.baseVal.width;
+      return from + Math.min(Math.max((x - c.left) / c.wide, 0), 1) * (to - from);
+    };
+    c.svg.addEventListener("pointerdown", e => { start = share(e); });
+    c.svg.addEventListener("pointerup", e => {
+      const end = share(e);
+      if (start !== null && Math.abs(end - start) > 0.02 * (to - from)) set(Math.min(start, end), Math.max(start, end));
+      start = null;
+    });
+    c.svg.addEventListener("pointercancel", () => { start = null; });
+    c.svg.addEventListener("dblclick", actions.all);
+  }
+  panel.hidden = false;
+  show();
+}

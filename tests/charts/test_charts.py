@@ -1,0 +1,133 @@
+"""Charts, read back from their SVG."""
+
+import re
+from xml.etree import ElementTree
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from modelgen.charts import Band, Chart, Curve, Interval, drawn, intervals, number, sheet, ticks
+
+SVG = "{http://www.w3.org/2000/svg}"
+NUMBERS = re.compile(r"-?\d+")
+
+
+def chart(x: np.ndarray, y: np.ndarray, **more: object) -> Chart:
+    return Chart("a joint", "time [s]", "effort [A]", [Curve(x, y, "measured", "measured")], **more)  # type: ignore[arg-type]
+
+
+def points(path: str) -> list[np.ndarray]:
+    """Pieces of a path of relative steps, in pixels."""
+    pieces = []
+    for piece in path.split("M")[1:]:
+        first, _, steps = piece.partition("l")
+        start = [int(v) for v in NUMBERS.findall(first)]
+        moved = np.array([int(v) for v in NUMBERS.findall(steps)]).reshape(-1, 2)
+        pieces.append(np.cumsum(np.vstack([start, moved]), axis=0) / 10.0)
+    return pieces
+
+
+def curve_of(svg: str) -> list[np.ndarray]:
+    (path,) = re.findall(r'<path class="line measured" transform="scale\(\.1\)" d="([^"]*)"', svg)
+    return points(path)
+
+
+def frame_of(svg: str) -> tuple[float, float]:
+    (wide, high) = re.findall(r'<svg x="\d+" y="\d+" width="(\d+)" height="(\d+)"', svg)[0]
+    return float(wide), float(high)
+
+
+def test_a_curve_is_where_its_data_are() -> None:
+    t = np.linspace(0.0, 3.0, 200)
+    y = np.sin(5 * t) - 0.3 * t
+    svg = drawn(chart(t, y, y_range=(-2.0, 2.0)))
+    (piece,) = curve_of(svg)
+    wide, high = frame_of(svg)
+    assert np.abs(np.interp(t / 3 * wide, piece[:, 0], piece[:, 1]) - (2.0 - y) / 4.0 * high).max() < 0.2
+
+
+def test_a_line_is_broken_where_nothing_is_known() -> None:
+    t = np.arange(60.0)
+    y = np.where((t > 20) & (t < 30), np.nan, t)
+    assert len(curve_of(drawn(chart(t, y)))) == 2
+
+
+def test_no_peak_of_a_long_record_is_lost() -> None:
+    """A hundred thousand samples, of which one is ten times as large as all others."""
+    t = np.arange(1e5)
+    y = np.sin(t / 300.0)
+    y[54_321] = 10.0
+    svg = drawn(chart(t, y))
+    (piece,) = curve_of(svg)
+    top = piece[np.argmin(piece[:, 1])]
+    assert len(piece) < 3000
+    assert top[1] < 0.1 * frame_of(svg)[1]
+    assert abs(top[0] / frame_of(svg)[0] - 0.54321) < 0.002
+
+
+@given(st.floats(-1e6, 1e6), st.floats(1e-6, 1e6))
+def test_ticks_are_round_and_few(low: float, wide: float) -> None:
+    found = ticks(low, low + wide, 5)
+    assert 2 <= len(found) <= 6
+    step = np.diff(found)
+    assert np.allclose(step, step[0], rtol=1e-6)
+    leading = f"{step[0]:.0e}"[0]
+    assert leading in "125"
+    assert low - 1e-6 * wide <= found[0] <= found[-1] <= low + wide * (1 + 1e-6)
+
+
+@pytest.mark.parametrize(
+    ("value", "text"),
+    [
+        (0.0743254, "0.0743"),
+        (2.0, "2.00"),
+        (12345.6, "12346"),
+        (3.2e-7, "3.2e-07"),
+        (-0.5, "-0.500"),
+        (0.0, "0"),
+    ],
+)
+def test_numbers_have_three_digits_that_count(value: float, text: str) -> None:
+    assert number(value) == text
+
+
+@pytest.mark.parametrize("span", [(-3.7, 2.9), (-1.5e-3, 0.95e-3), (-25_000.0, 104_000.0), (1e-9, 3e-9)])
+def test_words_stand_inside_their_picture_and_outside_the_curves(span: tuple[float, float]) -> None:
+    """A letter is seven pixels wide, or less."""
+    t = np.linspace(0.0, 10.0, 50)
+    svg = drawn(chart(t, np.linspace(*span, 50)))
+    left = float(re.findall(r'<svg x="(\d+)"', svg)[0])
+    for x, word in re.findall(r'<text class="tick" x="([\d.-]+)"[^>]*text-anchor="end">([^<]*)<', svg):
+        assert 7.0 * len(word) <= float(x) < left
+
+
+def test_a_sheet_is_one_picture_with_a_legend_and_the_same_again() -> None:
+    t = np.linspace(0.0, 1.0, 20)
+    one = Chart(
+        "one", "time [s]", "q [rad]", [Curve(t, t, "before", "as described")], bands=[Band(-1, 1, "noise")]
+    )
+    text = sheet([one, one, one], 2)
+    assert text == sheet([one, one, one], 2)
+    root = ElementTree.fromstring(text)
+    words = [e.text for e in root.iter(f"{SVG}text")]
+    assert words.count("as described") == 1
+    assert words.count("noise") == 1
+    assert words.count("one") == 3
+    assert [float(v) for v in root.attrib["viewBox"].split()][2] == 2 * 440
+
+
+def test_an_interval_lies_about_its_value_and_beside_what_was_expected() -> None:
+    rows = [Interval("MX1", 2.0, 1.5, 2.5, 1.0), Interval("FC1", -1.0, -1.2, -0.8)]
+    svg = intervals(rows, "effort [A]", "parameters")
+    spans = [[float(v) for v in m] for m in re.findall(r'class="span" d="M([\d.]+) [\d.]+H([\d.]+)"', svg)]
+    at = [float(v) for v in re.findall(r'class="dot" cx="([\d.]+)"', svg)]
+    rings = [float(v) for v in re.findall(r'class="ring" cx="([\d.]+)"', svg)]
+    assert len(rings) == 1
+    for (low, high), value in zip(spans, at, strict=True):
+        assert low < value < high
+        assert value == pytest.approx((low + high) / 2, abs=0.2)
+    pixels_per_ampere = (spans[0][1] - spans[0][0]) / 1.0
+    assert (at[0] - rings[0]) / pixels_per_ampere == pytest.approx(1.0, abs=0.02)
+    assert (at[0] - at[1]) / pixels_per_ampere == pytest.approx(3.0, abs=0.02)
