@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import lru_cache
 
@@ -14,12 +15,14 @@ from modelgen.transmission import Curves, Transmission, curves, of_joint
 @dataclass(frozen=True)
 class NumericDrive(Curves):
     """One coordinate's drive. driven: whether there is a motor at all. unit: of the motor coordinate.
-    ratio: k1 where it is constant and q_m = k1 q, else None.
+    ratio: k1 where it is constant and q_m = k1 q, else None. of_length: motor coordinate per metre of the
+    actuator's length, and at the length zero, None where it has none.
     """
 
     driven: bool
     unit: str
     ratio: float | None = None
+    of_length: tuple[float, float] | None = None
 
 
 _KEPT = 8  # arms whose drives are remembered: a stream asks for them block after block
@@ -45,7 +48,16 @@ def _drive(t: Transmission, prismatic: bool) -> NumericDrive:
         driven=t.driven,
         unit=t.unit if t.driven else ("m" if prismatic else "rad"),
         ratio=_ratio(t.motor().subs(known), t.q),
+        of_length=_of_length(t, known),
     )
+
+
+def _of_length(t: Transmission, known: Mapping[sp.Symbol, float]) -> tuple[float, float] | None:
+    found = t.drive.of_length()
+    if found is None:
+        return None
+    per_length, at_zero = (float(sp.sympify(x).subs(known)) for x in found)
+    return per_length, at_zero
 
 
 def _ratio(motor: sp.Expr, q: sp.Symbol) -> float | None:

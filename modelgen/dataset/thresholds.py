@@ -83,6 +83,18 @@ class DatasetThresholds(Group):
         "A reading beyond that, and beyond as many times its neighbours, is refused as impossible.",
         _GUARD,
     )
+    min_lone_samples: int = entry(
+        100, "samples", "Lone readings are looked for in logs of so many at least.", _GUARD
+    )
+    lone_reading: float = entry(
+        20.0,
+        "of the 99 % quantile",
+        "A reading farther from the cubic through the four beside it is lone, and taken as they say.",
+        "no position of the example logs has one; an encoder's bit that is read wrongly is larger",
+    )
+    lone_effort: float = entry(
+        0.01, "of the range", "An effort that is less far from them stays as it is.", _GUARD
+    )
     misread_efforts: float = entry(
         0.05, "of the readings", "Where more are beyond the limit, the unit is asked about.", _GUARD
     )

@@ -18,6 +18,7 @@ POSES = 60  # of the records, at which inertia and weight are looked at
 PART = 0.1  # of the efforts, that an inertia makes up to be looked at
 CLEARLY = 3.0  # standard deviations
 FACTOR = 5.0  # between the weight found and that of the nominal links, from which on it is asked about
+ALONE = 0.8  # of the power of what differs, that another size of one link explains if it is asked about
 NOTABLE = 0.02  # of the largest weight at a joint [N m, N], below which that at another is not compared
 LINK = ("XX", "XY", "XZ", "YY", "YZ", "ZZ", "MX", "MY", "MZ", "M")
 
@@ -41,10 +42,13 @@ def doubts(
     q, ddq, efforts = (x[:: max(1, len(x) // POSES)] for x in several)
     at_rest = _columns(model, evaluator, q, np.zeros_like(q), theta)
     given = model, evaluator, (q, ddq, efforts), at_rest, theta, covariance, determined
-    return [
-        *(_inertia(*given) if whole else []),
-        *_weight(model, q, at_rest, theta, determined),
-    ]
+    found, links = _inertia(*given) if whole else [], _links(model)
+    if not links[1]:
+        return found
+    along = _columns(model, evaluator, q, ddq, theta)
+    gains = np.column_stack([drive.gain(x) for drive, x in zip(drives_of(model.arm), q.T, strict=True)])
+    weight = _weight(model, q, at_rest, links, theta, determined)
+    return [*found, *(weight or _one_link(model, along * gains[:, :, None], links, theta, determined))]
 
 
 def _motion(p: Prepared) -> tuple[Array, Array, Array]:
@@ -94,20 +98,72 @@ def _inertia(
     ]
 
 
-def _weight(model: Model, q: Array, at_rest: Array, theta: Array, determined: NDArray[np.bool_]) -> list[str]:
-    """Joints whose weight is far from that of the nominal links, where the description has all of them."""
-    try:
-        links = nominal_links(model.arm)
-    except InputError:
-        return []
-    standard = [links.get(p.name, 0.0) for p in model.standard]
-    nominal = np.array(list(grouped(model, standard).values()))
+def _links(model: Model) -> tuple[NDArray[np.bool_], list[Array]]:
+    """Base parameters (p,) that links alone have a part in, and the vector (p,) of each nominal link.
+
+    No vectors where the description has not all of the links.
+    """
     of_links = np.array(
         [
             all(model.standard[i].name.rstrip("0123456789") in LINK for i, _ in b.terms)
             for b in model.grouping.base
         ]
     )
+    try:
+        known = nominal_links(model.arm)
+    except InputError:
+        return of_links, []
+    own = []
+    for i in range(len(model.arm.links)):
+        names = {f"{name}{i + 1}" for name in LINK}
+        standard = [known.get(p.name, 0.0) if p.name in names else 0.0 for p in model.standard]
+        own.append(np.array(list(grouped(model, standard).values())))
+    return of_links, own
+
+
+def _one_link(
+    model: Model,
+    columns: Array,
+    links: tuple[NDArray[np.bool_], list[Array]],
+    theta: Array,
+    determined: NDArray[np.bool_],
+) -> list[str]:
+    """The link that is some times its nominal self, where that alone explains how the efforts differ.
+
+    columns: (N, n, p) of weight and accelerations along the records.
+    """
+    of_links, own = links
+    used = of_links & determined
+    gain = columns[:, :, used].reshape(-1, int(used.sum()))
+    parts = [gain @ x[used] for x in own]
+    nominal, seen = sum(parts, np.zeros(len(gain))), gain @ theta[used]
+    apart = seen - nominal
+    if np.linalg.norm(apart) < PART * min(float(np.linalg.norm(x)) for x in (seen, nominal)):
+        return []
+    power = np.array([float(part @ part) for part in parts])
+    more = np.array([float(apart @ part) for part in parts]) / np.maximum(power, 1e-300)
+    best = int(np.argmax(more**2 * power))
+    times, share = 1.0 + float(more[best]), float(more[best] ** 2 * power[best] / (apart @ apart))
+    if share < ALONE or 1.0 / FACTOR < times < FACTOR:
+        return []
+    name = model.arm.joints[best].name
+    return [
+        f"The efforts are those of {times:.2g} times the nominal link {name}, the others as described: is a "
+        "unit another one there, of its mass or of lengths?"
+    ]
+
+
+def _weight(
+    model: Model,
+    q: Array,
+    at_rest: Array,
+    links: tuple[NDArray[np.bool_], list[Array]],
+    theta: Array,
+    determined: NDArray[np.bool_],
+) -> list[str]:
+    """Joints whose weight is far from that of the nominal links, where the description has all of them."""
+    of_links, own = links
+    nominal = np.sum(own, axis=0)
     described, seen = (at_rest[:, :, of_links] @ x[of_links] for x in (nominal, theta))
     lost = np.asarray(at_rest[:, :, of_links & ~determined].any(axis=(0, 2)))
     gain = np.column_stack([drive.gain(q[:, j]) for j, drive in enumerate(drives_of(model.arm))])

@@ -73,6 +73,10 @@ class Drive(ABC):
     def joint_from_motor(self, q_m: sp.Expr) -> sp.Expr:
         """q as a function of q_m: the inverse of `motor_from_joint` on the drive's range."""
 
+    def of_length(self) -> tuple[sp.Expr, sp.Expr] | None:
+        """Motor coordinate per metre of the actuator, and at the length zero; None where it has no length."""
+        return None
+
     def inverse_gain(self, q: sp.Symbol) -> sp.Expr:
         """1/K [A per N m or N]."""
         return 1 / (self.torque_constant * sp.diff(self.motor_from_joint(q), q))

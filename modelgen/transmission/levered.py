@@ -99,6 +99,10 @@ class LeveredDrive(Drive):
         """Motor coordinate per length [unit/m]."""
         return (self.motor[1] - self.motor[0]) / sp.sympify(self.length[1] - self.length[0])
 
+    def of_length(self) -> tuple[sp.Expr, sp.Expr]:
+        """(m1 - m0) / (L1 - L0), and m0 less that times L0."""
+        return self._per_length, self.motor[0] - self._per_length * self.length[0]
+
     def motor_from_joint(self, q: sp.Expr) -> sp.Expr:
         """q_m = m0 + (m1 - m0) (q_p - L0) / (L1 - L0)."""
         return self.motor[0] + self._per_length * (sp.sqrt(self.actuator.square(q)) - self.length[0])

@@ -188,7 +188,7 @@ def test_a_mistake_in_a_mapping_has_its_place(text: str, message: str, tmp_path:
     [
         ("counts, side: motor", "rad, side: motor", "found the unit 'rad', available: counts"),
         ("unit: deg, side: motor", "unit: counts, side: motor", "write unit: rev, scale: 1/4096"),
-        ("unit: N m", "unit: N m, side: motor", "the motor coordinate of a lever has a unit of its own"),
+        ("unit: N m", "unit: N m, side: motor", "found the unit 'N m', expected a force's for joint knee"),
         ("motor/angle [deg]", "motor", "found no column 'motor' in the log"),
     ],
 )

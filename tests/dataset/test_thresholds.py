@@ -24,6 +24,7 @@ from modelgen.dataset.processing.instants import fitting
 from modelgen.dataset.processing.periods import period_of
 from modelgen.dataset.processing.stamps import true_stamps
 from modelgen.dataset.processing.timing import Survey
+from modelgen.dataset.reading.lone import without_lone
 from modelgen.dataset.reading.plausible import check_efforts
 from modelgen.dataset.reading.repeats import refresh_of
 from modelgen.errors import InputError
@@ -164,6 +165,9 @@ def cases(folder: Path) -> dict[str, tuple[Value, Seen]]:
         "remarked_effort": (1.3, efforts(0.85)),
         "impossible_effort": (1.05, efforts(0.9)),
         "outlying_effort": (50.0, efforts(np.inf, 30.0, 0.0005)),
+        "min_lone_samples": (5000, wrong_readings),
+        "lone_reading": (1e30, wrong_readings),
+        "lone_effort": (1.0, wrong_readings),
         "misread_efforts": (0.15, efforts(2.0, 10.0, 0.1)),
         "milliampere_readings": (1.5, efforts(0.1)),
         "steady_step": (0.01, reading(folders["turn"], STEP * np.arange(200.0), turned())),
@@ -210,6 +214,14 @@ def stamped(t: Array) -> Seen:
     """Even samples under other stamps."""
     q = 0.3 * np.sin(np.multiply.outer(STEP * np.arange(len(t)), [1.0, 1.3]))
     return lambda limits: true_stamps(t, q, limits)[1]
+
+
+def wrong_readings(limits: DatasetThresholds) -> Any:
+    """2000 samples of a position and an effort, one of each read wrongly."""
+    t = STEP * np.arange(2000.0)
+    table = np.column_stack([t, np.sin(t), np.cos(t)])
+    table[[150, 250], [1, 2]] += 0.1
+    return without_lone("log", table, {1: "q1"}, {2: "i1"}, limits)[1]
 
 
 def efforts(limit: float, high: float = 1.0, share: float = 1.0) -> Seen:

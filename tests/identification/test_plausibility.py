@@ -113,6 +113,7 @@ def test_the_log_as_it_is_raises_no_doubt(arm: mg.Arm, logs: list[Table]) -> Non
     ("right", "wrong", "said"),
     [
         ("mass: 2,", "mass: 0.1,", "The weight at elbow comes out 20"),
+        ("mass: 4,", "mass: 0.4,", "The efforts are those of 9.5 times the nominal link shoulder"),
         ("[0.15, 0.02, 0]", "[150, 20, 0]", "The weight at elbow comes out 0.001"),
         ("[0, -9.81, 0]", "[0, 9.81, 0]", "The weight at shoulder comes out -1 times"),
         (
@@ -129,6 +130,12 @@ def test_a_result_far_from_the_nominal_links_is_asked_about(
     found = mg.identify(other, *logs)
     assert any(doubt.startswith(said) for doubt in found.to_json()["doubts"])
     assert said in found.to_json()["verdict"]
+
+
+@pytest.mark.parametrize("mass", [2, 7])  # a nominal mass is no measured one
+def test_a_link_not_far_from_its_nominal_self_is_no_doubt(mass: int, logs: list[Table]) -> None:
+    other = loads(ARMS.replace("mass: 4,", f"mass: {mass},"), "arms.yaml", known_effects())["two"]
+    assert mg.identify(other, *logs).to_json()["doubts"] == []
 
 
 def test_an_inertia_below_zero_is_called_impossible(arm: mg.Arm, logs: list[Table]) -> None:

@@ -179,9 +179,14 @@ class MappedReader:
         motor = joint.position.side == "motor"
         unit = self.drives[k].unit if motor else coordinate
         name = f"{'qm' if motor else 'q'}{k + 1}"
-        place = self._signal(joint.position, units.POSITIONS[unit], [*path, "position"])
+        known, stroke = units.POSITIONS[unit], self.drives[k].of_length if motor else None
+        if stroke is not None:
+            known = {**known, **{name: stroke[0] * metres for name, metres in units.LENGTHS.items()}}
+        place = self._signal(joint.position, known, [*path, "position"])
+        if stroke is not None and joint.position.unit in units.LENGTHS:
+            place = replace(place, offset=place.offset + stroke[1])
         wrap = self.foreign.positive(joint.position.wrap, [*path, "position", "wrap"])
-        factor = units.POSITIONS[unit][joint.position.unit]
+        factor = abs(known[joint.position.unit])
         self._signals[name] = place if wrap is None else replace(place, wrap=factor * wrap)
         for kind, model, known in (
             ("dq", joint.velocity, units.VELOCITIES[coordinate]),
@@ -208,13 +213,8 @@ class MappedReader:
                 path,
             )
         if kind in ("torque", "force"):
-            if at_motor and drive.unit == "unit":
-                raise self.foreign.error(
-                    "the motor coordinate of a lever has a unit of its own: give the current, or the effort "
-                    "at the joint (side: joint)",
-                    [*path, "side"],
-                )
-            expected = "force" if described.type == "prismatic" and not at_motor else "torque"
+            actuator = at_motor and drive.of_length is not None
+            expected = "force" if actuator or (described.type == "prismatic" and not at_motor) else "torque"
             if kind != expected:
                 raise self.foreign.error(
                     f"found the unit '{effort.unit}', expected a {expected}'s for joint {described.name}",

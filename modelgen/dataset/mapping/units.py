@@ -7,18 +7,18 @@ from collections.abc import Mapping
 
 _TURN = 2 * math.pi
 _ANGLE = {"rad": 1.0, "mrad": 1e-3, "deg": math.pi / 180, "rev": _TURN}
-_LENGTH = {"m": 1.0, "cm": 1e-2, "mm": 1e-3, "um": 1e-6}
+LENGTHS: Mapping[str, float] = {"m": 1.0, "cm": 1e-2, "mm": 1e-3, "um": 1e-6}
 TIMES: Mapping[str, float] = {"s": 1.0, "ms": 1e-3, "us": 1e-6, "ns": 1e-9}
 STEPS = (5e-5, 0.2)  # s, between samples of a robot
-POSITIONS: Mapping[str, Mapping[str, float]] = {"rad": _ANGLE, "m": _LENGTH, "unit": {"counts": 1.0}}
+POSITIONS: Mapping[str, Mapping[str, float]] = {"rad": _ANGLE, "m": LENGTHS, "unit": {"counts": 1.0}}
 # "rpm" and "rev/s" are common in drives' own logs.
 VELOCITIES: Mapping[str, Mapping[str, float]] = {
     "rad": {**{f"{name}/s": factor for name, factor in _ANGLE.items()}, "rpm": _TURN / 60},
-    "m": {f"{name}/s": factor for name, factor in _LENGTH.items()},
+    "m": {f"{name}/s": factor for name, factor in LENGTHS.items()},
 }
 ACCELERATIONS: Mapping[str, Mapping[str, float]] = {
     "rad": {f"{name}/s^2": factor for name, factor in _ANGLE.items()},
-    "m": {f"{name}/s^2": factor for name, factor in _LENGTH.items()},
+    "m": {f"{name}/s^2": factor for name, factor in LENGTHS.items()},
 }
 TEMPERATURES: Mapping[str, float] = {"degC": 1.0}
 # kind of the effort, and factor to A; N m or N; 1; V

@@ -16,6 +16,7 @@ from modelgen.dataset.processing.stamps import true_stamps
 from modelgen.dataset.processing.timing import Axis, Survey, survey
 from modelgen.dataset.reading import checks
 from modelgen.dataset.reading.column_table import Log
+from modelgen.dataset.reading.lone import without_lone
 from modelgen.dataset.reading.plausible import check_efforts, check_unsigned, doubtful_unit
 from modelgen.dataset.reading.repeats import refresh_of
 from modelgen.dataset.reading.sources import BLOCK, Source, open_source
@@ -49,6 +50,12 @@ def read(
     checks.check_length(spec, len(table), thresholds.min_samples)
     checks.check_finite(spec, table[:, 0], source.wanted, table)
     table, found, repeats = _true_instants(source, table)
+    positions, efforts = (
+        {k: name for k, name in enumerate(source.wanted) if name in part}
+        for part in (source.signals.position, source.signals.effort)
+    )
+    table, lone = without_lone(spec, table, positions, efforts, thresholds)
+    found += lone
     checks.check_length(spec, len(table), thresholds.min_samples)
     axis = survey(Survey(spec, source.rate, source.gap, thresholds), table[:, 0], BLOCK)
     if axis.method != "none" and source.rate is None and repeats == 1.0:
@@ -178,7 +185,8 @@ def record_of(source: Source, arm: Arm, table: Array, axis: Axis, t: Array) -> t
                 ratio = drive.ratio
                 gain[:, k] = drive.gain(q[:, k]) if ratio is None else drive.torque_constant * ratio
             elif kind == "taum":
-                gain[:, k] = drive.torque_constant
+                # of an actuator with a length the force, for all motor units in a metre of it
+                gain[:, k] = drive.torque_constant * (1.0 if drive.of_length is None else drive.of_length[0])
         given = effort / gain
     elif any(drive.driven for drive in drives):
         raise InputError(
