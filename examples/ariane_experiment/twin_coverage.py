@@ -11,6 +11,7 @@ from __future__ import annotations
 
 import argparse
 from dataclasses import dataclass
+from functools import cache
 from pathlib import Path
 
 import numpy as np
@@ -22,7 +23,7 @@ from twin_records import ARM, ARMS, PERIODS, as_record, recorded, truth
 from twin_run import BUILD, excited
 
 from modelgen.dataset import Settings, choose, prepare
-from modelgen.description import load
+from modelgen.description import Arm, load
 from modelgen.identification import identify
 
 Array = NDArray[np.float64]
@@ -55,9 +56,15 @@ class Coverage:
         return np.asarray((self.value.mean(axis=0) - self.true) / self.value.std(axis=0, ddof=1))
 
 
+@cache
+def described() -> Arm:
+    """The arm, read once: its model is then built once too."""
+    return load(ARMS)[ARM]
+
+
 def estimated(points: Path, seed: int, periods: int) -> tuple[Array, Array]:
     """Base parameters and their standard deviations (p,) from one record."""
-    arm = load(ARMS)[ARM]
+    arm = described()
     log = as_record(recorded(points, seed, periods), arm)
     found = identify([prepare(log, choose(log, Settings(cutoff=CUTOFF)))], arm)
     std = [np.nan if e.std is None else e.std for e in found.estimates]

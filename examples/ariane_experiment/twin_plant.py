@@ -137,7 +137,8 @@ class _Loops:
         ]
         rates[1, [0, 3]], rates[2, 0] = [-1, 1], 1
         exact = expm(rates * STEP)[:3]
-        self.rows = [[float(row[c]) for c in (0, 1, 3, 4)] for row in exact]
+        # of the current, the charge and the mean current: what each of four has in them
+        self.rows = [tuple(float(row[c]) for c in (0, 1, 3, 4)) for row in exact]
 
     def step(self, wanted: float, m: float, speed: float, ripple: float, position: bool) -> float:
         """Advance by a step; mean current over it [A]."""
@@ -149,7 +150,8 @@ class _Loops:
         error = self.asked - self.measured
         self.speed_integral += error * STEP
         reference = self.gain * (error + SPEED_INTEGRAL * self.speed_integral) + ripple
-        given = (self.current, self.charge, reference, speed)
-        current, charge, moved = (sum(a * b for a, b in zip(row, given, strict=True)) for row in self.rows)
-        self.current, self.charge = current, charge
-        return moved / STEP
+        before, held = self.current, self.charge
+        (a, b, c, d), (e, f, g, h), (r, s, t, u) = self.rows
+        self.current = a * before + b * held + c * reference + d * speed
+        self.charge = e * before + f * held + g * reference + h * speed
+        return (r * before + s * held + t * reference + u * speed) / STEP

@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, replace
 from difflib import get_close_matches
+from functools import lru_cache
+from typing import TypeAlias
 
 import sympy as sp
 
@@ -36,6 +38,7 @@ from modelgen.errors import InputError
 from modelgen.transmission import of_joint
 
 TIME_STEP = sp.Symbol("dt", positive=True)
+Given: TypeAlias = tuple[tuple[str, sp.Expr], ...]  # values by name
 
 
 @dataclass(frozen=True)
@@ -164,12 +167,18 @@ def _applied(
     nominal = effect.values(use.values)
     if isinstance(effect, InputEffect):
         joints = list(arm.coordinates) if joint is None else [joint]
-        return [_at_input(effect, i, values, nominal) for i in joints]
+        own = tuple(values.items())
+        laws = [(i, *_at_input(type(effect), i, own)) for i in joints]
+        return [
+            AppliedEffect(effect, i, (), values, (part,), sp.Integer(0), states, steps, nominal)
+            for i, part, states, steps in laws
+        ]
     states: Mapping[str, sp.Symbol] = {}
     steps: Mapping[str, sp.Expr] = {}
     potential: sp.Expr = sp.Integer(0)
     if isinstance(effect, LinkEffect):
-        parts = tuple(part for i in effect.links(arm, joint) for part in _on_link(effect, i, values))
+        own = tuple(values.items())
+        parts = tuple(part for i in effect.links(arm, joint) for part in _on_link(type(effect), i, own))
     elif isinstance(effect, BodyEffect):
         assert joint is not None
         body = body_variables(number, of_joint(arm, arm.joints[joint]))
@@ -208,23 +217,28 @@ def free_symbol(name: str) -> sp.Symbol:
     return sp.Symbol(f"free_{name}", real=True)
 
 
-def _on_link(effect: LinkEffect, link: int, values: Values) -> list[Part]:
-    parts = []
-    for k, point in enumerate(effect.points(values), 1):
+# A law over symbols is the same for every arm, and a diagnosis asks for each many times.
+@lru_cache(maxsize=1024)
+def _on_link(effect: type[LinkEffect], link: int, given: Given) -> tuple[Part, ...]:
+    values, parts = dict(given), []
+    for k, point in enumerate(effect().points(values), 1):
         x = point_variables(f"_{link + 1}_{k}")
-        moment = effect.moment(x, values)
-        forces = (*effect.force(x, values), *(moment if any(m != 0 for m in moment) else []))
+        moment = effect().moment(x, values)
+        forces = (*effect().force(x, values), *(moment if any(m != 0 for m in moment) else []))
         parts.append(Part("point", link, x, forces, point))
-    return parts
+    return tuple(parts)
 
 
-def _at_input(effect: InputEffect, joint: int, values: Values, nominal: Mapping[str, float]) -> AppliedEffect:
-    number = f"{joint + 1}"
+@lru_cache(maxsize=1024)
+def _at_input(
+    effect: type[InputEffect], joint: int, given: Given
+) -> tuple[Part, Mapping[str, sp.Symbol], Mapping[str, sp.Expr]]:
+    """Its part, its states and their steps."""
+    number, values = f"{joint + 1}", dict(given)
     states = state_symbols(number, effect.name, effect.states)
     x = InputVariables(sp.Symbol(f"input{number}", real=True), states)
-    part = Part("input", joint, x, (effect.required(x, values), effect.effective(x, values)))
-    steps = effect.step(x, values, TIME_STEP)
-    return AppliedEffect(effect, joint, (), values, (part,), sp.Integer(0), states, steps, nominal)
+    part = Part("input", joint, x, (effect().required(x, values), effect().effective(x, values)))
+    return part, states, effect().step(x, values, TIME_STEP)
 
 
 def effect_class(use: EffectUse) -> type[Definition]:

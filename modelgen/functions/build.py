@@ -15,7 +15,7 @@ from modelgen.functions.kinematic import kinematic_functions
 from modelgen.functions.levels import levels
 from modelgen.functions.nominal import base_of, nominal_values
 from modelgen.functions.objects import Function, Levels, Model
-from modelgen.functions.options import Options, prepared
+from modelgen.functions.options import EVALUATED, Options, prepared
 from modelgen.functions.parametric import (
     base_values,
     folded_values,
@@ -28,6 +28,8 @@ from modelgen.functions.watch import watch_functions
 from modelgen.model.equations import Equations
 
 DEFAULTS = Options()
+REMEMBERED = 2  # models that are evaluated, of the arms that were asked for last
+_recent: list[tuple[Arm, Model]] = []  # an arm has no hash: it is found by its identity
 
 
 def build_model(arm: Arm, options: Options = DEFAULTS) -> Model:
@@ -37,6 +39,18 @@ def build_model(arm: Arm, options: Options = DEFAULTS) -> Model:
     Jacobian, for identified values that are not those of the base parameters, and for nominal ones that
     the description does not give.
     """
+    if options != EVALUATED:
+        return _built(arm, options)
+    for known, model in _recent:
+        if known is arm:
+            return model
+    model = _built(arm, options)
+    _recent.append((arm, model))
+    del _recent[:-REMEMBERED]
+    return model
+
+
+def _built(arm: Arm, options: Options) -> Model:
     arm = prepared(arm, options)
     real = Equations(arm, options.runtime_geometry, options.sincos)
     base = Equations(slid(arm), options.runtime_geometry, options.sincos)
