@@ -2,16 +2,19 @@
 
     make mutations
     PYTHONPATH=tests python -m architecture.mutations [WORD ...]     those whose stage has one of the words
+    PYTHONPATH=tests python -m architecture.mutations --anew         all, whatever is known of them
 
 Each replaces a piece of one file by another that a mistake could have left there, and runs tests of that
 stage. It is caught where a test fails; not where all pass, or none can be run. Exit status 1 where one is
-not caught. To add one: a piece that stands once in its file, a wrong one in its place, and tests that ought
-to see it.
+not caught. What was caught stands in build/mutations.txt, and is not run again while package and tests are
+the same: a run that was stopped goes on where it stood. To add one: a piece that stands once in its file, a
+wrong one in its place, and tests that ought to see it.
 """
 
 from __future__ import annotations
 
 import argparse
+import hashlib
 import os
 import shutil
 import subprocess
@@ -24,6 +27,7 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parents[2]
 LEFT_OUT = shutil.ignore_patterns(".*", "build", "generated", "__pycache__", "node_modules")
 TESTS_FAILED = 1  # pytest's exit status
+KNOWN = ROOT / "build" / "mutations.txt"  # a digest a line, of what was caught
 
 
 @dataclass(frozen=True)
@@ -166,18 +170,36 @@ def caught(mutation: Mutation, folder: Path) -> bool:
         path.write_text(text, encoding="utf-8")
 
 
+def digest(mutation: Mutation, root: Path = ROOT) -> str:
+    """Digest of the mutation with the package and the tests that it is tried on."""
+    found = hashlib.sha256(repr(mutation).encode())
+    for part in ("modelgen", "tests"):
+        for path in sorted((root / part).rglob("*.py")):
+            found.update(path.relative_to(root).as_posix().encode())
+            found.update(path.read_bytes())
+    return found.hexdigest()
+
+
 def main() -> int:
     """Print a line for each. Exit status 1 where one is not caught."""
     parser = argparse.ArgumentParser(description=(__doc__ or "").split("\n", maxsplit=1)[0])
     parser.add_argument("word", nargs="*", help="stages, by default all")
-    words: list[str] = parser.parse_args().word
+    parser.add_argument("--anew", action="store_true", help="also what is known to be caught")
+    given = parser.parse_args()
+    words: list[str] = given.word
     chosen = [m for m in MUTATIONS if not words or any(word in m.stage for word in words)]
+    known = set() if given.anew or not KNOWN.exists() else set(KNOWN.read_text(encoding="utf-8").split())
     missed = 0
     with tempfile.TemporaryDirectory() as place:
         folder = Path(place) / "checkout"
         copied(folder)
+        KNOWN.parent.mkdir(exist_ok=True)
         for mutation in chosen:
-            seen = caught(mutation, folder)
+            name = digest(mutation)
+            seen = name in known or caught(mutation, folder)
+            if seen and name not in known:
+                with KNOWN.open("a", encoding="utf-8") as file:
+                    file.write(f"{name}\n")
             missed += not seen
             print(f"{'caught' if seen else 'MISSED':7s} {mutation.stage:11s} {mutation.defect}", flush=True)
     print(f"{len(chosen) - missed} of {len(chosen)} caught")
