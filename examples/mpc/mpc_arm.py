@@ -60,7 +60,7 @@ def controlled(arm: Arm, folder: Path, effort: FloatArray | None = None) -> Cont
     The limits of the inputs are those of the drives unless `effort` gives them.
     """
     generate([arm], folder, Options(), processes=1)
-    module = _imported(folder / arm.name / f"{arm.name}_casadi.py")
+    module = imported(folder / arm.name / f"{arm.name}_casadi.py")
     prefix = f"{arm.name}_"
     drives = _drives(arm) if effort is None else None
     return ControlledArm(
@@ -116,7 +116,8 @@ def _drives(arm: Arm) -> Drives:
     )
 
 
-def _imported(file: Path) -> ModuleType:
+def imported(file: Path) -> ModuleType:
+    """The module of a file, of which nothing is left on the disk."""
     spec = importlib.util.spec_from_file_location(file.stem, file)
     assert spec is not None
     assert spec.loader is not None

@@ -58,19 +58,20 @@ def closed_loop(
     plant: Plant,
     duration: float,
     progress: Callable[[int, int], None] = lambda done, total: None,
+    begin: float = 0.0,
 ) -> Run:
-    """Run from the reference's start, at rest. Raises RuntimeError where the plant leaves its strokes.
+    """Run from the reference at the time `begin` [s]. Raises RuntimeError where the plant leaves its strokes.
 
     The state is measured without noise and the plan applied without delay.
     """
-    n, period = horizon.arm.n, horizon.period
+    period = horizon.period
     count = round(duration / period)
-    state = np.concatenate([reference(np.zeros(1))[0, :n], np.zeros(n)])
+    state = reference(np.array([begin]))[0]
     states, inputs, failures = [state], list[FloatArray](), 0
     cpu, iterations = list[float](), list[int]()
     guess = None
     for k in range(count):
-        ahead = reference((k + np.arange(horizon.steps + 1)) * period)
+        ahead = reference(begin + (k + np.arange(horizon.steps + 1)) * period)
         plan = horizon.solve(state, ahead, guess)
         failures += not plan.success
         # Without a plan the input stays, and the next plan starts cold.
@@ -82,23 +83,22 @@ def closed_loop(
         cpu.append(plan.cpu)
         iterations.append(plan.iterations)
         progress(k + 1, count)
-    t = np.arange(count + 1) * period
+    t = begin + np.arange(count + 1) * period
     path = np.array(states)
-    motor, motor_speed = _motor(horizon.arm, path)
     return Run(
         t,
         reference(t),
         path,
         np.array(inputs),
-        motor,
-        motor_speed,
+        *motors(horizon.arm, path),
         np.array(cpu),
         np.array(iterations),
         failures,
     )
 
 
-def _motor(arm: ControlledArm, states: FloatArray) -> tuple[FloatArray, FloatArray]:
+def motors(arm: ControlledArm, states: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Places and speeds of the motors along a path, in their units."""
     n = arm.n
     rows = [arm.functions["motor_from_joint"](x[:n], x[n:], np.zeros(n)) for x in states]
     return np.array([r[0].full().ravel() for r in rows]), np.array([r[1].full().ravel() for r in rows])

@@ -26,7 +26,7 @@ from mpc_arm import ControlledArm, controlled, described, perturbed
 from mpc_horizon import Horizon
 from mpc_loop import Run, closed_loop
 from mpc_plant import Plant, compiled
-from mpc_timing import BENCH_EFFORT, Progress, Timing, benchmark, comparison
+from mpc_timing import BENCH_EFFORT, Progress, Timing, benchmark, comparison, in_c
 from rich.console import Console
 from rich.progress import Progress as Bar
 from rich.table import Table
@@ -52,9 +52,12 @@ def main() -> None:
         arm = controlled(described(HERE / "arms.yaml", "ariane4_mpc"), BUILD / "generated")
         bench = controlled(described(SHIPPED, "yaw3pitch"), BUILD / "generated", BENCH_EFFORT)
         made = plants(arm)
+        compared = 0.25 if quick else COMPARED
         runs = tracking(arm, made, jit, 0.5 if quick else DURATION)
         with shown("comparing solvers") as progress:
-            timings = comparison(arm, made["wrong"], jit, 0.25 if quick else COMPARED, progress)
+            timings = comparison(arm, made["wrong"], jit, compared, progress)
+        generated = (BUILD / "generated" / arm.name, SHIPPED.parent / "generated" / "ariane4")
+        timings.append(in_c(arm, generated, perturbed(arm, SEED), BUILD / "c", compared))
         with shown("benchmark") as progress:
             cold = benchmark(bench, jit, 3 if quick else 51, progress)
     except (InputError, RuntimeError, ValueError) as error:
@@ -62,6 +65,7 @@ def main() -> None:
     out = Console(width=110)
     table(out, "ariane4 in closed loop, 20 intervals of 50 ms, warm start", timings)
     table(out, "yaw3pitch, one plan, 20 intervals of 50 ms, cold start", cold)
+    beside(out, timings)
     report(out, arm, runs)
     if not quick:
         from mpc_plots import draw  # noqa: PLC0415 - needs matplotlib, nothing else does
@@ -125,6 +129,17 @@ def table(out: Console, title: str, timings: list[Timing]) -> None:
             "" if np.isnan(t.rms) else f"{t.rms:.2f}",
         )
     out.print(made, "")
+
+
+def beside(out: Console, timings: list[Timing]) -> None:
+    """How far the arm is driven elsewhere in C than with CasADi and fatrop: the formulation is the same."""
+    driven = {t.name: t.run for t in timings}
+    ours, theirs = driven[timings[-1].name], driven["forward dynamics, fatrop, JIT"]
+    assert ours is not None
+    assert theirs is not None
+    angles = np.rad2deg(abs(ours.states - theirs.states)[:, : ours.states.shape[1] // 2].max())
+    currents = abs(ours.inputs - theirs.inputs).max()
+    out.print(f"in C and with fatrop the angles differ by {angles:.5f} deg, currents by {currents:.4f} A", "")
 
 
 def report(out: Console, arm: ControlledArm, runs: dict[str, Run]) -> None:

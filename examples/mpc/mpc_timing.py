@@ -6,12 +6,14 @@ less than it moves the time on the wall.
 
 from __future__ import annotations
 
+import time
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
 from mpc_arm import ControlledArm
+from mpc_c import built, closed_loop_in_c, daqp
 from mpc_horizon import FORMULATIONS, SOLVERS, Horizon
 from mpc_loop import Run, closed_loop
 from mpc_plant import Plant
@@ -31,12 +33,17 @@ class Timing:
     iterations: np.ndarray
     build: float
     failures: int  # plans that did not converge
-    rms: float  # deg, over all joints; nan for a benchmark without a plant
+    run: Run | None = None  # what was driven; nothing in a benchmark without a plant
 
     @property
     def name(self) -> str:
         """For tables and axes."""
         return f"{self.formulation} dynamics, {self.solver}{', JIT' if self.jit else ''}"
+
+    @property
+    def rms(self) -> float:
+        """Root mean square of the tracking error [deg], over joints and time; nan without a run."""
+        return np.nan if self.run is None else float(np.rad2deg(np.sqrt(np.mean(self.run.error**2))))
 
 
 Progress = Callable[[int, int], None]
@@ -61,10 +68,25 @@ def comparison(
                 run.iterations,
                 horizon.build_time,
                 run.failures,
-                rms(run),
+                run,
             )
         )
     return timings
+
+
+def in_c(
+    arm: ControlledArm, generated: tuple[Path, Path], parameters: np.ndarray, build: Path, duration: float
+) -> Timing:
+    """The same closed loop from C alone; see mpc_c.built.
+
+    parameters: base parameters of the plant. Raises RuntimeError where DAQP or a compiler is missing.
+    """
+    sources = daqp(build)
+    begin = time.perf_counter()
+    program = built(arm, generated, sources, build)
+    spent = time.perf_counter() - begin
+    run = closed_loop_in_c(program, arm, parameters, duration)
+    return Timing("forward", "C with DAQP", False, run.cpu, run.iterations, spent, run.failures, run)
 
 
 def benchmark(arm: ControlledArm, jit: Path, repetitions: int, progress: Progress) -> list[Timing]:
@@ -84,12 +106,5 @@ def benchmark(arm: ControlledArm, jit: Path, repetitions: int, progress: Progres
         if not plans[0].success:
             raise RuntimeError(f"{arm.name}: {solver} did not converge with {formulation} dynamics")
         cpu, iterations = np.array([p.cpu for p in plans]), np.array([p.iterations for p in plans])
-        timings.append(
-            Timing(formulation, solver, compile_it, cpu, iterations, horizon.build_time, 0, np.nan)
-        )
+        timings.append(Timing(formulation, solver, compile_it, cpu, iterations, horizon.build_time, 0))
     return timings
-
-
-def rms(run: Run) -> float:
-    """Root mean square of the tracking error [deg], over joints and time."""
-    return float(np.rad2deg(np.sqrt(np.mean(run.error**2))))
