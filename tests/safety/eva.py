@@ -80,9 +80,13 @@ class Proof:
 
 
 def claims(function: Function) -> list[Claim]:
-    """What is claimed of a function: in float, bounds on what six pivots divide are out of EVA's reach."""
-    solves = "forward_dynamics" in function.name
-    return [Claim("float", finite=not solves), Claim("double", finite=True)]
+    """What is claimed of a function: bounds on what pivots divide are out of EVA's reach.
+
+    In float those of six pivots of the forward dynamics, and always those of the monitor, which knows nothing
+    of the information that its state holds.
+    """
+    solves, estimates = "forward_dynamics" in function.name, "monitor_step" in function.name
+    return [Claim("float", finite=not (solves or estimates)), Claim("double", finite=not estimates)]
 
 
 def intervals(model: Model, function: Function, *, finite: bool) -> dict[str, list[Interval]]:

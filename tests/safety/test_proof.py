@@ -20,6 +20,7 @@ SELECTED = [
     ("ariane4", "joint_from_motor"),
     ("ariane4", "inverse_dynamics_derivatives"),
     ("ariane4", "momentum_observer_step"),
+    ("ariane4", "monitor_step"),
     ("ur10e", "inverse_dynamics"),
     ("ur10e", "forward_dynamics"),
     ("ur10e", "jacobian"),
