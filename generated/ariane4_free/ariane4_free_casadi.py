@@ -78,24 +78,55 @@ def function(name: str) -> ca.Function:
     return _BUILDERS[name](name)
 
 
-def export_ariane4_free_model():
+@cache
+def with_jacobian(name: str) -> ca.Function:
+    """Inverse or forward dynamics by name, with the emitted derivatives as CasADi's custom_jacobian.
+
+    For Gauss-Newton and integrators: second derivatives are dearer than without. It is called, never expanded,
+    so for MX alone; inputs other than q, dq and ddq or input are constants to it. Raises KeyError where there
+    are no such derivatives.
+    """
+    arm, dynamics, suffix = name.rpartition("_dynamics")
+    derivatives, plain = function(f"{arm}{dynamics}_derivatives{suffix}"), function(name)
+    names, output = plain.name_in(), plain.name_out(0)
+    inputs = plain.sx_in()
+    found = derivatives(**dict(zip(names, inputs)))
+    blocks = [found.get(f"{output}_by_{i}", ca.SX(plain.numel_out(0), plain.numel_in(i))) for i in names]
+    result = ca.SX.sym(f"out_{output}", plain.sparsity_out(0))
+    titles = [*names, f"out_{output}"], [f"jac_{output}_{i}" for i in names]
+    options = {
+        "custom_jacobian": ca.Function(f"jac_{name}", [*inputs, result], blocks, *titles),
+        "is_diff_in": [f"{output}_by_{i}" in found for i in names],
+        "jac_penalty": 0,
+        "never_inline": True,
+    }
+    return ca.Function(name, inputs, plain.call(inputs), names, plain.name_out(), options)
+
+
+def export_ariane4_free_model(custom_jacobian: bool = False):
     """The arm as an AcadosModel, in SX: x = [q; dq], u the inputs, p the rest of forward_dynamics' arguments.
 
     f_impl_expr takes inverse dynamics, the cheaper of the two. A sign of dry friction has no derivative at
-    rest: give it a `smoothing` in the description. acados_template is not on PyPI; it comes with acados.
+    rest: give it a `smoothing` in the description. acados_template comes with acados.
+
+    With custom_jacobian it is in MX, and calls the dynamics with the derivatives of with_jacobian: cheaper in
+    explicit integrators (ERK) from about six joints on.
     """
     from acados_template import AcadosModel
 
-    forward, inverse = function("ariane4_free_forward_dynamics"), function("ariane4_free_inverse_dynamics")
+    symbol, made = (ca.MX.sym, with_jacobian) if custom_jacobian else (ca.SX.sym, function)
+    forward, inverse = made("ariane4_free_forward_dynamics"), made("ariane4_free_inverse_dynamics")
     n = forward.numel_out(0)
-    x, xdot, u = ca.SX.sym("x", 2 * n), ca.SX.sym("xdot", 2 * n), ca.SX.sym("u", n)
+    x, xdot, u = symbol("x", 2 * n), symbol("xdot", 2 * n), symbol("u", n)
     q, dq, ddq = x[:n], x[n:], xdot[n:]
     values = {"q": q, "sin_q": ca.sin(q), "cos_q": ca.cos(q), "dq": dq, "ddq": ddq, "input": u}
-    rest = {name: ca.SX.sym(name, forward.size1_in(name)) for name in forward.name_in() if name not in values}
-    values.update(rest)
+    rest = {name: forward.size1_in(name) for name in forward.name_in() if name not in values}
+    p = symbol("p", sum(rest.values()))
+    ends = [sum(list(rest.values())[:k]) for k in range(len(rest) + 1)]
+    values.update(zip(rest, ca.vertsplit(p, ends)))
     model = AcadosModel()
     model.name = "ariane4_free"
-    model.x, model.xdot, model.u, model.p = x, xdot, u, ca.vertcat(*rest.values())
+    model.x, model.xdot, model.u, model.p = x, xdot, u, p
     model.f_expl_expr = ca.vertcat(dq, forward(*(values[name] for name in forward.name_in())))
     effort = inverse(*(values[name] for name in inverse.name_in()))
     model.f_impl_expr = ca.vertcat(xdot[:n] - dq, effort - u)

@@ -1,4 +1,4 @@
-"""export_<arm>_model() makes an AcadosModel. acados is not on PyPI: a stub stands for its class."""
+"""export_<arm>_model() makes an AcadosModel. acados is no dependency: a stub stands for its class."""
 
 import sys
 from pathlib import Path
@@ -99,11 +99,36 @@ def generate_symbols(options: Options) -> np.ndarray:
     return np.array([made.arm.symbols[name] for name in made.geometry])
 
 
+@pytest.mark.usefixtures("stub")
+@pytest.mark.parametrize("options", VARIANTS)
+def test_with_the_emitted_derivatives_it_is_the_same_model(options: Options) -> None:
+    """What acados asks of an explicit model: the slope, and its sensitivities along given directions."""
+    plain: Any = exported("ariane4", options)
+    called: Any = module("ariane4", options).export_ariane4_model(custom_jacobian=True)
+    rng = np.random.default_rng(4)
+    q, dq, u, parameters = inputs(
+        model("ariane4"), next(f for f in model("ariane4").functions if f.name == "forward_dynamics"), rng
+    )
+    p = np.concatenate([parameters, generate_symbols(options)]) if options.runtime_geometry else parameters
+    seeds, found = rng.uniform(-1, 1, (6, 9)), []
+    for made in (plain, called):
+        for name in ("x", "xdot", "u", "p"):
+            assert getattr(made, name).is_valid_input(), f"{name} must be free symbols"
+        along = ca.jtimes(made.f_expl_expr, made.x, ca.DM(seeds))
+        by_input = ca.jacobian(made.f_expl_expr, made.u)
+        values = [made.f_expl_expr, along, by_input, ca.substitute(made.f_impl_expr, made.xdot, made.x)]
+        whole = ca.Function("whole", [made.x, made.u, made.p], values)
+        found.append([r.full() for r in whole(np.concatenate([q, dq]), u, p)])
+    assert isinstance(called.f_expl_expr, ca.MX)
+    for mine, other in zip(*found, strict=True):
+        np.testing.assert_allclose(mine, other, rtol=0, atol=1e-10 * abs(other).max())
+
+
 @pytest.mark.parametrize("name", ["ariane4", "scara"])
 def test_importing_the_module_does_not_need_acados(checkout: Path, name: str) -> None:
     assert module(name, Options()).functions()
     text = (checkout / "generated" / name / f"{name}_casadi.py").read_text()
-    assert f"def export_{name}_model():" in text
+    assert f"def export_{name}_model(" in text
     with pytest.raises(ImportError, match="acados_template"):
         exported(name, Options())
 

@@ -26,13 +26,15 @@ _INDENT = "    "
 def casadi_files(model: Model, provenance: Provenance) -> dict[str, str]:
     """Text of `<arm>_casadi.py`, by its path below the arm's folder."""
     arm = model.arm.name
+    names = {f.name for f in model.functions}
     text = render(
         "casadi/module.py.j2",
         arm=arm,
         remarks=remarks(model),
         provenance=provenance.head(arm),
         sections=model_sections(model),
-        acados={"forward_dynamics", "inverse_dynamics"} <= {f.name for f in model.functions},
+        custom_jacobian=any("_dynamics_derivatives" in name for name in names),
+        acados={"forward_dynamics", "inverse_dynamics"} <= names,
         nominal=[
             (f"{value!r},", f"# {p.name} {unit(p.unit)}")
             for value, p in zip(model.nominal, base_parameters(model), strict=bool(model.nominal))
