@@ -153,7 +153,7 @@ def generate(
     if identification is not None:
         if parameters is not None:
             raise InputError("--identification holds parameters: give it or --parameters, not both")
-        values, noise = read_identification(identification, names)
+        values, noise = read_identification(identification, wanted)
         chosen = changed(chosen, {"identified": values, "noise": noise})
     if parameters is not None:
         chosen = changed(chosen, {"identified": values_of(parameters, names)})

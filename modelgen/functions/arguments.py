@@ -8,6 +8,8 @@ from modelgen.description.objects import Arm
 from modelgen.functions.objects import Argument
 from modelgen.model.equations import Equations
 
+LARGEST_GAIN = 1e5  # norm of the observer's gains [1/s]
+
 
 def joint_units(arm: Arm, per: str = "") -> str:
     """rad and m joint by joint: "rad" where all are revolute."""
@@ -85,7 +87,7 @@ def arguments(equations: Equations, parameters: Sequence[tuple[str, int, str]]) 
             "load", n, "force at the motor coordinate", "loads of the drives, from the function load", 1e9
         ),
         Argument("forgetting", 1, "1", "forgetting factor: 1 - time step / memory", 1.0),
-        Argument("gain", n, "1/s", "gains of the observer, gain dt below 1", 1e5),
+        Argument("gain", n, "1/s", "gains of the observer, gain dt below 1", LARGEST_GAIN),
         Argument(
             "observer_state",
             n,

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Mapping, Sequence
-from math import isfinite
+from math import isfinite, sqrt
 from pathlib import Path
 from typing import Any
 
@@ -14,6 +14,7 @@ from ruamel.yaml.error import YAMLError
 
 from modelgen.description import Arm
 from modelgen.errors import InputError
+from modelgen.functions.arguments import LARGEST_GAIN
 from modelgen.functions.objects import Model
 from modelgen.numeric import Array
 from modelgen.options import ModelOptions
@@ -74,11 +75,11 @@ def read_values(who: str, file: Path, arms: Sequence[str]) -> dict[str, float]:
 
 
 def read_identification(
-    given: Path | str | Mapping[str, Any], arms: Sequence[str]
+    given: Path | str | Mapping[str, Any], arms: Sequence[Arm]
 ) -> tuple[dict[str, float], Noise]:
     """Values of the base parameters by name, and the noise: of identification.json, or of what it holds.
 
-    Raises InputError where it cannot be read, is another arm's, or holds no noise.
+    Raises InputError where it cannot be read, is another arm's, or holds no noise that the arm may have.
     """
     who, data = "--identification", given
     if isinstance(given, str | Path):
@@ -91,9 +92,10 @@ def read_identification(
             raise InputError(f"{who}: cannot be read as JSON; expected identification.json") from error
     if not isinstance(data, Mapping) or not isinstance(data.get("parameters"), list):
         raise InputError(f"{who}: expected what modelgen identify writes as identification.json")
-    if list(arms) != [data.get("arm")]:
+    names = [arm.name for arm in arms]
+    if names != [data.get("arm")]:
         raise InputError(
-            f"{who}: belongs to the arm '{data.get('arm')}', found {', '.join(arms)}; "
+            f"{who}: belongs to the arm '{data.get('arm')}', found {', '.join(names)}; "
             f"give --arm {data.get('arm')}"
         )
     if not isinstance(data.get("noise"), Mapping):
@@ -114,8 +116,18 @@ def read_identification(
         found = Noise(rows[0], rows[1], rows[2], rows[3], rows[4], gain, duration, spreads)
     except (KeyError, TypeError, ValueError) as error:
         raise InputError(f"{who}: expected what modelgen identify writes, found {error} amiss") from error
-    if not all(x > 0 and isfinite(x) for x in (*found.input, *found.correlation, gain, duration)):
+    above = (*found.input, *found.correlation, gain, duration)
+    if not all(x > 0 for x in above) or not all(isfinite(x) for row in (above, *rows) for x in row):
         raise InputError(f"{who}: expected errors, times, a gain and a duration above zero under `noise`")
+    n = len(arms[0].coordinates)
+    for row in rows:
+        if len(row) != n:
+            raise InputError(
+                f"{who}: found a list of {len(row)} under `noise`, expected {n}: one for each joint"
+            )
+    if gain * sqrt(n) > LARGEST_GAIN:
+        most = LARGEST_GAIN / sqrt(n)
+        raise InputError(f"{who}: found a gain of {gain:g} 1/s, expected at most {most:.0f} 1/s")
     return values, found
 
 

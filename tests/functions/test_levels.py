@@ -31,6 +31,12 @@ def identification() -> dict[str, Any]:
     return {"schema": 1, "arm": ARM, "parameters": parameters, "noise": noise}
 
 
+def observer(**values: Any) -> dict[str, Any]:
+    """The identification's noise, the observer's part of it changed."""
+    noise = identification()["noise"]
+    return {"noise": {**noise, "observer": {**noise["observer"], **values}}}
+
+
 @pytest.mark.parametrize("z", [1.0, 2.0])
 def test_the_level_is_left_when_it_says(z: float) -> None:
     """Mean first passage of low-passed white noise of unit variance, simulated."""
@@ -94,6 +100,9 @@ def test_a_changed_parameter_is_an_alarm_beyond_what_is_left_open(folder: Path) 
         ({"arm": "ur10e"}, "belongs to the arm 'ur10e', found ariane4; give --arm ur10e"),
         ({"parameters": 3}, "expected what modelgen identify writes as identification.json"),
         ({"noise": {"input": [1.0]}}, "expected what modelgen identify writes, found 'observer' amiss"),
+        (observer(gain=-20.0), "expected errors, times, a gain and a duration above zero under `noise`"),
+        (observer(gain=1e6), "found a gain of 1e+06 1/s, expected at most 57735 1/s"),
+        (observer(rms=[1.0, 2.0]), "found a list of 2 under `noise`, expected 3: one for each joint"),
     ],
 )
 def test_another_file_is_refused(change: dict[str, Any], message: str, tmp_path: Path) -> None:
