@@ -59,6 +59,7 @@ format: $(TESTED)
 bench: $(TESTED)
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check --editable '.[bench]'
 	$(BIN)/python benchmarks/variants.py --accept
+	$(BIN)/python benchmarks/control.py --accept
 	$(BIN)/python benchmarks/compare.py --accept
 
 bench-scale: $(TESTED)

@@ -18,6 +18,7 @@ from peers.measure import Call, heap, instructions, nanoseconds, values
 
 Array = NDArray[np.float64]
 OURS, RUN_TIME = "modelgen", "modelgen, parameters at run time"
+MUJOCO_ALONE = "MuJoCo, dynamics alone"
 PINOCCHIO, MUJOCO, KANE, SYMFORCE = "Pinocchio, C++", "MuJoCo", "SymPy, Kane", "SymForce"
 TRACED, TRACED_DEFAULT = "Pinocchio, traced with CasADi", "the same in Pinocchio's default convention"
 FUNCTIONS = tuple(ours.FUNCTIONS)
@@ -122,7 +123,7 @@ def _agree(case: Subject, model: Model, results: Mapping[str, Mapping[str, Array
     reference, n = results[OURS], case.joints
     for peer, found in results.items():
         for function, value in found.items():
-            key = function.removesuffix("_run_time").removesuffix("_world")
+            key = function.removesuffix("_run_time").removesuffix("_world").removesuffix("_alone")
             mine, theirs = reference[key], value
             if key == "mass_matrix":  # Pinocchio fills the upper triangle, by columns
                 square = theirs.reshape(-1, n, n)
@@ -164,6 +165,9 @@ def _split(found: dict[str, Peer]) -> dict[str, Peer]:
         if name == TRACED:
             default = {f: f"{f}_world" for f in ("mass_matrix", "forward_dynamics")}
             result[TRACED_DEFAULT] = replace(_renamed(made, default), costs={})
+        if name == MUJOCO:
+            alone = {f: f"{f}_alone" for f in ("inverse_dynamics", "forward_dynamics")}
+            result[MUJOCO_ALONE] = replace(_renamed(made, alone), costs={})
         if run_time:
             result[RUN_TIME] = replace(_renamed(made, run_time), costs={})
     return result

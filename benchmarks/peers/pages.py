@@ -1,4 +1,4 @@
-"""docs/benchmarks.md, from the figures of compare.py, variants.py and scale.py."""
+"""docs/benchmarks.md, from the figures of compare.py, control.py, variants.py and scale.py."""
 
 # ruff: noqa: E501 - lines of the page
 from __future__ import annotations
@@ -7,7 +7,7 @@ import json
 from pathlib import Path
 from typing import Any
 
-from peers import pages_costs, pages_scale, pages_variants, pictures, quoted
+from peers import pages_control, pages_costs, pages_scale, pages_variants, pictures, quoted
 from peers.tables import FUNCTIONS, counts, operations, overview, table, times
 
 _HEAD = """\
@@ -40,7 +40,7 @@ modelgen and the figures of [sizes.md](sizes.md) (Cortex-M4F) share the same C.
 
 
 def document(result: dict[str, Any], folder: Path) -> str:
-    """docs/benchmarks.md. `folder` holds the results of variants.py and scale.py, where they have been written."""
+    """docs/benchmarks.md. `folder` holds the results of control.py, variants.py and scale.py, where they have been written."""
     versions = ", ".join(f"{name} {version}" for name, version in result["versions"].items())
     lines = [_HEAD, f"Measured with {versions}."]
     arms = result["arms"]
@@ -56,7 +56,8 @@ def document(result: dict[str, Any], folder: Path) -> str:
     lines += ["", "## Generators that are not on PyPI", "", quoted.TEXT, *quoted.table(result["quoted"])]
     lines += ["", "## Regressor in many states", "", "Rows per second on one core, thousands.", ""]
     lines += _rates(result["rows_per_second"])
-    for name, write in (("variants", pages_variants.lines), ("scale", pages_scale.lines)):
+    sections = {"control": pages_control.lines, "variants": pages_variants.lines, "scale": pages_scale.lines}
+    for name, write in sections.items():
         if (folder / f"{name}.json").exists():
             lines += ["", *write(json.loads((folder / f"{name}.json").read_text(encoding="utf-8")))]
     return "\n".join(lines) + "\n"
