@@ -6,6 +6,8 @@ which neither the motion's bandwidth nor any other noise is looked for.
 
 from __future__ import annotations
 
+import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 
@@ -39,10 +41,16 @@ class Spectrum:
     @property
     def content(self) -> Array:
         """Power of the speed without its noise, (F,)."""
-        # White noise of the position, from the upper half; its estimate scatters: twice the level is noise.
+        # its estimate scatters: twice the level is noise
+        return np.asarray(
+            np.where(self.seen, np.maximum(self.power - 2.0 * self.floor * self.white, 0.0), 0.0)
+        )
+
+    @property
+    def floor(self) -> float:
+        """Power density of white noise of the positions, from the upper half, where no motion is."""
         upper = self.f > 0.5 * self.f[-1]
-        floor = 2.0 * float(np.median(self.power[upper] / self.white[upper]))
-        return np.asarray(np.where(self.seen, np.maximum(self.power - floor * self.white, 0.0), 0.0))
+        return float(np.median(self.power[upper] / self.white[upper]))
 
     def bandwidth(self, share: float) -> float:
         """Frequency [Hz] below which a share of the speed's power lies."""
@@ -96,6 +104,11 @@ def spectra(record: Record, limits: DatasetThresholds = USUAL) -> list[Spectrum]
     return [_spectrum(k, record.q[:, k], steps[k], rate) for k in moving or range(record.n)]
 
 
+def white_noise(values: Array, rate: float) -> float:
+    """Standard deviation of the white noise of positions (N,) that are read at a rate [Hz]."""
+    return math.sqrt(0.5 * rate * _spectrum(0, values, 0.0, rate).floor)
+
+
 def _spectrum(joint: int, q: Array, step: float, rate: float) -> Spectrum:
     speed = np.gradient(q, 1.0 / rate)[1:-1]  # the ends are one-sided
     window = int(min(len(speed), max(64, 10.0 * rate)))
@@ -123,19 +136,39 @@ def _seen(f: Array, positions: Array, total: float) -> float:
     return float(f[max(1, int(np.argmax(hidden)))]) if hidden.any() else float(f[-1])
 
 
-def chosen_cutoff(record: Record, limits: DatasetThresholds = USUAL) -> float:
-    """Parallel cut-off [Hz]: as high as the noise of the positions allows.
+def chosen_cutoff(
+    records: Sequence[Record], limits: DatasetThresholds = USUAL, lengths: Sequence[float] = ()
+) -> float:
+    """Parallel cut-off [Hz] of records of one rate: as high as the noise of every record's positions allows.
 
     Noise in a regressor biases least squares: it makes up a thousandth of the accelerations' power at most.
-    Bounded by the motion's own bandwidth, and by the record's rate and length.
+    Bounded by the motions' own bandwidth, and by the records' rate and lengths. lengths: of further records
+    [s] that are to be processed alike.
     """
-    found = spectra(record, limits)
-    widths = [s.bandwidth(limits.bandwidth_power) for s in found]
+    rate = 1.0 / records[0].step
+    return min(quiet_cutoff(records, limits, lengths), rate / limits.samples_per_cutoff_period)
+
+
+def quiet_cutoff(
+    records: Sequence[Record],
+    limits: DatasetThresholds = USUAL,
+    lengths: Sequence[float] = (),
+    *,
+    rounding: bool = True,
+) -> float:
+    """The same without the bound of the rate. rounding: whether positions count whose only noise is that of
+    their steps.
+    """
     shares = limits.max_noise_share, limits.cutoff_rounding_share
-    quiet = min(s.quiet(w, *shares) for s, w in zip(found, widths, strict=True))
-    length = len(record.t) * record.step
-    least = max(limits.cutoff_over_bandwidth * max(widths), limits.min_cutoff_periods / length)
-    return float(min(max(quiet, least), 1.0 / record.step / limits.samples_per_cutoff_period))
+    quiet, widest = np.inf, 0.0
+    for spectrum in (s for record in records for s in spectra(record, limits)):
+        width = spectrum.bandwidth(limits.bandwidth_power)
+        widest = max(widest, width)
+        if rounding or not spectrum.rounding_alone:
+            quiet = min(quiet, spectrum.quiet(width, *shares))
+    shortest = min(*(len(r.t) * r.step for r in records), *lengths, np.inf)
+    least = max(limits.cutoff_over_bandwidth * widest, limits.min_cutoff_periods / shortest)
+    return float(max(quiet, least))
 
 
 def motion_bandwidth(record: Record, limits: DatasetThresholds = USUAL) -> float:

@@ -108,7 +108,7 @@ def choose(records: Record | Sequence[Record], settings: Settings | Chosen | Non
     settings = settings or Settings()
     cutoff = settings.cutoff
     if cutoff is None:
-        cutoff = max(chosen_cutoff(record, limits) for record in several)
+        cutoff = chosen_cutoff(several, limits)
     position = settings.position_cutoff
     if position is None:
         position = limits.position_cutoff_over_cutoff * cutoff

@@ -9,7 +9,7 @@ import numpy as np
 
 from modelgen.diagnosis.adequacy.dominance import Dominance, dominance
 from modelgen.diagnosis.adequacy.free_form import FreeForm, free_forms
-from modelgen.diagnosis.adequacy.lack_of_fit import repeating_in
+from modelgen.diagnosis.adequacy.lack_of_fit import lack_of_fit, repeating
 from modelgen.diagnosis.candidates import with_causes
 from modelgen.diagnosis.equations import Equations
 from modelgen.diagnosis.evidence import covariance, mean_squares
@@ -17,7 +17,7 @@ from modelgen.diagnosis.options.thresholds import in_band
 from modelgen.diagnosis.selection import Cause, Selection, needed_evidence
 from modelgen.diagnosis.validation import Check, agreement
 from modelgen.numeric import Array
-from modelgen.regression.weighted import moving_rows, weighted_fit
+from modelgen.regression.weighted import moving_rows, rmse, weighted_fit
 
 
 @dataclass(frozen=True)
@@ -46,8 +46,8 @@ def examined(selection: Selection, equations: Equations) -> list[Examined]:
                 _gain(cause, equations),
                 _undominated(dominance(cause, selection)),
                 _form(forms.get(cause.trial.candidate.joint)),
-                _stable(k, selection),
                 explains(k, selection),
+                _stable(k, selection),
             ),
         )
         for k, cause in enumerate(selection.causes)
@@ -193,25 +193,26 @@ def _stable(k: int, selection: Selection) -> Check:
 
 
 def explains(k: int, selection: Selection) -> Check:
-    """How much of what repeats at its joints a cause takes away, beside all others.
+    """Whether the causes at the joints of the cause k explain most of what is not noise there.
 
-    A law that stands in for one that the catalogue lacks leaves more than the law itself would.
+    What still repeats from period to period is not noise; what errors of the positions repeat is no lack of
+    the model. A law that stands in for one that the catalogue lacks leaves more than the law itself would.
+    Passed as well where no more repeats than noise leaves by chance.
     """
     system = selection.system
-    equations, least = system.equations, system.equations.thresholds.adequacy.min_explained_share
-    trial = selection.causes[k].trial
-    columns = with_causes(equations, [c.trial for i, c in enumerate(selection.causes) if i != k])
-    theta = weighted_fit(equations.rows, columns)
-    without = [r.effort - c @ theta for r, c in zip(equations.rows, columns, strict=True)]
-    joints, sizes = trial.candidate.joints(system.n), mean_squares(system)
-    errors = _repeating_errors(equations)
-    before, after = (
-        float((np.maximum(0.0, repeating_in(left, equations) - errors) / sizes)[joints].sum())
-        for left in (without, system.residuals)
-    )
-    found = max(0.0, 1.0 - after / before) if before > 0 else float("nan")
-    text = "share of what repeats at its joints that it takes away"
-    return Check("explains", None if np.isnan(found) else found >= least, False, found, least, text)
+    equations, limits = system.equations, system.equations.thresholds.adequacy
+    joints = selection.causes[k].trial.candidate.joints(system.n)
+    text = "share of what is not noise at its joints that the causes there explain together"
+    fit = lack_of_fit(system)
+    if fit is None:
+        return Check("explains", None, True, float("nan"), limits.min_explained_share, text)
+    sizes = mean_squares(system)
+    bare = rmse(equations.rows, equations.columns, weighted_fit(equations.rows, equations.columns)) ** 2
+    left = np.maximum(0.0, repeating(system) - _repeating_errors(equations))
+    gained, rest = (float((squares / sizes)[joints].sum()) for squares in (bare - sizes, left))
+    found = gained / (gained + rest) if gained + rest > 0.0 else 0.0
+    passed = found >= limits.min_explained_share or fit.usual(joints, limits.usual_null_share)
+    return Check("explains", passed, True, found, limits.min_explained_share, text)
 
 
 def _repeating_errors(equations: Equations) -> Array:

@@ -20,7 +20,7 @@ from scipy import special
 
 from modelgen.dataset.processing.periods import folded
 from modelgen.diagnosis.adequacy.null_distribution import NULLS
-from modelgen.diagnosis.equations import Equations, Rows
+from modelgen.diagnosis.equations import Rows
 from modelgen.diagnosis.evidence import System, independent
 from modelgen.diagnosis.options.thresholds import AdequacyThresholds, EvidenceThresholds
 from modelgen.numeric import Array
@@ -65,11 +65,21 @@ class Test:
 
 @dataclass(frozen=True)
 class LackOfFit:
-    """statistic, threshold: of the test that comes nearest or exceeds most. by_joint: (n,), of all rows."""
+    """statistic, threshold: of the test that comes nearest or exceeds most. tests: of all rows and parts."""
 
     worst: Test
-    by_joint: Array
+    tests: Sequence[Test]
     periods: int
+
+    @property
+    def by_joint(self) -> Array:
+        """Statistics (n,) of all rows of each joint."""
+        return np.array([t.statistic for t in self.tests if t.kind == WHOLE])
+
+    def usual(self, joints: Sequence[int], share: float) -> bool:
+        """Whether as little is left at these joints as at those of a share of complete models."""
+        most = {kind: float(np.quantile(NULLS[kind], share)) for kind in (WHOLE, PART)}
+        return all(t.beyond < most[t.kind] for t in self.tests if t.joint in joints)
 
     @property
     def statistic(self) -> float:
@@ -174,8 +184,7 @@ def lack_of_fit(system: System) -> LackOfFit | None:
     if not any(np.isfinite(t.quantile) for t in found):
         return None
     worst = max(found, key=lambda t: t.statistic / t.threshold)
-    by_joint = [t.statistic for t in found if t.kind == WHOLE]
-    return LackOfFit(worst, np.array(by_joint), most)
+    return LackOfFit(worst, found, most)
 
 
 def in_parts(system: System) -> list[Test]:
@@ -230,16 +239,11 @@ def _tests(system: System) -> tuple[list[Test], int]:
 
 def repeating(system: System) -> Array:
     """Mean square of what repeats from period to period in the residuals of each joint (n,), less noise."""
-    return repeating_in(system.residuals, system.equations)
-
-
-def repeating_in(residuals: Sequence[Array], equations: Equations) -> Array:
-    """The same of other residuals of the equations, (M, n) by record."""
-    n = equations.n
+    n = system.n
     found = np.zeros(n)
     for j in range(n):
         between, within, means, scatter = 0.0, 0.0, 0, 0
-        for residual, r, rows in zip(residuals, equations.rows, equations.periods, strict=True):
+        for residual, r, rows in zip(system.residuals, system.rows, system.periods, strict=True):
             if rows is None:
                 continue
             table = folded(np.where(r.moving[:, j], residual[:, j], np.nan), rows)

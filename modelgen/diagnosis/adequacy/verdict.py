@@ -64,7 +64,7 @@ def verdict_of(selection: Selection, remains: Remains) -> tuple[str, str]:
     if remains.feigned.max() > least:
         joint = int(np.argmax(remains.feigned)) + 1
         return "cannot_tell", (
-            "the positions are too coarse: their errors alone could feign a gain of "
+            "the positions are too coarse or too noisy: their errors alone could feign a gain of "
             f"{remains.feigned.max():.1f} % at joint {joint}, and nothing explains more; "
             "finer encoders, or encoders at the motors, can tell"
         )

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
+from numpy.typing import NDArray
 
 from modelgen.dataset import Prepared, drives_of
 from modelgen.diagnosis.equations.equations import Equations
@@ -78,40 +79,62 @@ def check_excitation(equations: Equations) -> None:
 def check_efforts(equations: Equations) -> None:
     """Raises InputError where the efforts of a record cannot belong to its motion.
 
-    A model of that record alone must explain some of them, and what it has at the drives takes work from the
-    motion: friction does, and inertia gives back what it took. Efforts of the wrong sign would pass for a
-    payload that the other records have.
+    A model of that record alone must explain some of them. What the model of all records has at the drives
+    takes work from the motion: friction does, and inertia gives back what it took. The efforts of a record
+    have the sign of the others': turned round they would pass for a payload that the others lack.
     """
-    limits, drives = equations.thresholds.equations, drives_of(equations.arm)
-    effects = columns_of_effects(equations.model)
-    for r in equations.rows:
-        if r.prepared.input is None:
-            continue
+    limits, rows = equations.thresholds.equations, equations.rows
+    if equations.free:
+        return
+    for r in rows:
         theta = weighted_fit([r], [r.columns])
-        size = rmse([r], [np.zeros_like(r.columns)], np.zeros(len(theta)))
-        moving = [j for j in range(r.effort.shape[1]) if r.moving[:, j].any()]
-        name = r.prepared.record.name
-        if (
-            moving
-            and (rmse([r], [r.columns], theta)[moving] > limits.max_unexplained_effort * size[moving]).all()
-        ):
+        size, left, moving = _rms(r, 0.0 * theta), _rms(r, theta), r.moving.any(axis=0)
+        if moving.any() and (left[moving] > limits.max_unexplained_effort * size[moving]).all():
             raise InputError(
-                f"{name}: the model explains next to nothing of the efforts, fitted to this record alone; "
-                "expected efforts and positions of the same joints at the same time"
+                f"{r.prepared.record.name}: the model explains next to nothing of the efforts, fitted to "
+                "this record alone; expected efforts and positions of the same joints at the same time"
             )
+    for k, r in enumerate(rows if len(rows) > 1 else ()):
+        others = [other for i, other in enumerate(rows) if i != k]
+        theta = weighted_fit(others, [other.columns for other in others])
+        known = np.any([other.moving.any(axis=0) for other in others], axis=0) & r.moving.any(axis=0)
+        turned = np.flatnonzero(known & (_rms(r, -theta) < limits.max_turned_share * _rms(r, theta)))
+        if len(turned):
+            raise InputError(
+                f"{r.prepared.record.name}: the efforts of joint {_numbers(turned)} fit those of the other "
+                "records with the other sign; expected one sign in all of them"
+            )
+    driving = np.flatnonzero(_work_of_effects(equations) < -limits.max_driving_friction)
+    if len(driving):
+        raise InputError(
+            f"{rows[0].prepared.record.name}: friction at joint {_numbers(driving)} would drive the motion "
+            "there; expected efforts that act in the direction of the positions: is their sign the other way "
+            "round, or that of torque_constant?"
+        )
+
+
+def _rms(r: Rows, theta: Array) -> Array:
+    """RMS of what parameters (k,) leave of a record's efforts, by joint (n,)."""
+    return rmse([r], [r.columns], theta)
+
+
+def _numbers(joints: Sequence[int] | NDArray[np.intp]) -> str:
+    return ", ".join(str(j + 1) for j in joints)
+
+
+def _work_of_effects(equations: Equations) -> Array:
+    """Work that drives and friction take from the motion of all records, over that of the efforts, both in
+    size, by joint (n,).
+    """
+    rows, drives = equations.rows, drives_of(equations.arm)
+    theta, effects = weighted_fit(rows, equations.columns), columns_of_effects(equations.model)
+    taken, power = np.zeros(equations.n), np.zeros(equations.n)
+    for r in rows:
         q, dq = r.prepared.picked(r.prepared.q), r.prepared.picked(r.prepared.dq)
         speed = dq * np.column_stack([drive.gain(q[:, j]) for j, drive in enumerate(drives)])
-        taken, power = r.columns[:, :, effects] @ theta[effects] * speed, np.abs(r.effort * speed)
-        most = limits.max_driving_friction
-        given = [
-            j + 1 for j in moving if taken[r.moving[:, j], j].sum() < -most * power[r.moving[:, j], j].sum()
-        ]
-        if given:
-            raise InputError(
-                f"{name}: friction at joint {', '.join(map(str, given))} would drive the motion there; "
-                "expected efforts that act in the direction of the positions: is their sign the other way "
-                "round, or that of torque_constant?"
-            )
+        taken += (r.columns[:, :, effects] @ theta[effects] * speed * r.moving).sum(axis=0)
+        power += (np.abs(r.effort * speed) * r.moving).sum(axis=0)
+    return np.asarray(taken / np.maximum(power, 1e-300))
 
 
 def columns_of_effects(model: Model) -> list[int]:

@@ -15,6 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from modelgen.dataset import Prepared, Record, drives_of, prepare
+from modelgen.dataset.processing.content import white_noise
 from modelgen.diagnosis.equations.equations import Equations
 from modelgen.diagnosis.equations.rows import Rows
 from modelgen.diagnosis.options.thresholds import EquationThresholds
@@ -49,41 +50,42 @@ def _count(values: Array, limits: EquationThresholds) -> float:
     return count if least < limits.max_count_deviation else 0.0
 
 
-def rounded(record: Record, limits: EquationThresholds) -> bool:
-    """Whether rounding to counts is all the error that the logged positions have.
+def rounded(record: Record, limits: EquationThresholds) -> NDArray[np.bool_]:
+    """Whether rounding to counts is all the error that the logged positions have, by coordinate (n,).
 
     By their third differences, in which a motion that is sampled well all but vanishes.
     """
-    return all(_rounded(_logged(record, j), c, limits) for j, c in enumerate(counts(record, limits)))
-
-
-def _rounded(values: Array, count: float, limits: EquationThresholds) -> bool:
-    most = limits.max_rounding_error**2 * THIRD * count**2
-    return count > 0 and float(np.mean(np.diff(values, 3) ** 2)) <= most
+    found = []
+    for j, count in enumerate(counts(record, limits)):
+        most = limits.max_rounding_error**2 * THIRD * count**2
+        found.append(count > 0 and float(np.mean(np.diff(_logged(record, j), 3) ** 2)) <= most)
+    return np.array(found)
 
 
 def blurred(prepared: Prepared, limits: EquationThresholds, which: NDArray[np.bool_] | None = None) -> Record:
-    """The record with one more error of its counts on every position.
+    """The record with one more error like its own on every position.
 
     Where rounding is all the error that it has, the error of another rounding of the same motion: with the
     counts shifted by a part of one. A motion that takes many samples for a count keeps its error as long,
     and low frequencies hold more of it than of errors that are drawn sample by sample, as they are where
-    other noise moves the readings. which: of these coordinates (n,) alone.
+    other noise moves the readings: white, and as large as their spectrum shows above the motion. which: of
+    these coordinates (n,) alone.
     """
     record = prepared.record
     random = np.random.default_rng(SEED)
     q, motor = record.q.copy(), record.motor.copy()
     drives = drives_of(record.arm) if record.arm is not None else ()
+    alone = rounded(record, limits)
     for j, count in enumerate(counts(record, limits)):
-        if not count or (which is not None and not which[j]):
+        if which is not None and not which[j]:
             continue
         side = bool(record.motor_side) and record.motor_side[j]
         motion = (prepared.motor if side else prepared.q)[:, j]
-        if _rounded(_logged(record, j), count, limits):
+        if alone[j]:
             shifted = motion / count + random.uniform()
             error = (np.round(shifted) - shifted) * count
         else:
-            error = random.uniform(-0.5, 0.5, len(q)) * count
+            error = random.normal(0.0, white_noise(_logged(record, j), 1.0 / record.step), len(q))
         if side:
             motor[:, j] += error
         else:
@@ -115,8 +117,6 @@ def _left_by_errors(
 ) -> Array:
     """A draw of what errors of the positions leave in a record's residuals (M, n). which: as of `blurred`."""
     p, limits = r.prepared, equations.thresholds.equations
-    if not counts(p.record, limits).any():
-        return np.zeros(r.effort.shape)
     blurry = replace(prepare(blurred(p, limits, which), p.settings), awake=p.awake)
     again = equations.of_record(blurry, theta)
     return np.asarray((again.effort - r.effort) - (again.columns - r.columns) @ theta)
@@ -142,14 +142,11 @@ def repeating_errors(equations: Equations) -> NDArray[np.bool_]:
 
 
 def harmless(equations: Equations, squares: Array) -> bool:
-    """Whether the errors of the positions are known, and could feign no gain that is worth naming.
+    """Whether the errors of the positions could feign no gain that is worth naming.
 
     squares: mean squares of the residuals by joint (n,).
     """
-    limits = equations.thresholds
-    least = limits.validation.min_gain_percent
-    known = all(rounded(r.prepared.record, limits.equations) for r in equations.rows)
-    return bool(feigned(equations.blur, squares).max() <= least) and known
+    return bool(feigned(equations.blur, squares).max() <= equations.thresholds.validation.min_gain_percent)
 
 
 def feigned(blur: Array, squares: Array) -> Array:

@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from modelgen.dataset import Record, Settings
+from modelgen.dataset.processing.content import quiet_cutoff
 from modelgen.dataset.processing.instants import EffortInstant
 from modelgen.dataset.processing.periods import period_of
 from modelgen.description import Arm
@@ -71,8 +72,10 @@ def study_of(arm: Arm, found: Sequence[Record], options: Options) -> Study:
 def settings_for(found: Sequence[Record], cutoff: float | None, thresholds: Thresholds) -> Settings:
     """A wide band: what friction and backlash do lies far above the motion's own frequencies.
 
-    Narrower for free motions, which lack what drives do and whose noise is all in the positions. The last
-    record, the test record, has no say. cutoff: as the user gave it [Hz].
+    Narrower for free motions, which lack what drives do and whose noise is all in the positions, and where
+    nothing repeats: there what other noise of the positions than rounding does is not seen, and the band ends
+    where it begins. Of the last record, the test record, the length alone has a say. cutoff: as the user gave
+    it [Hz].
     Raises InputError where it is not positive.
     """
     if cutoff is not None and not cutoff > 0.0:
@@ -81,5 +84,9 @@ def settings_for(found: Sequence[Record], cutoff: float | None, thresholds: Thre
     if cutoff is None:
         widest = limits.max_free_cutoff if free else limits.max_cutoff
         cutoff = min(widest, rate / limits.samples_per_cutoff_period)
+        if not free and not any(period_of(record, None, thresholds.dataset) for record in found[:-1]):
+            lengths = [len(record.t) * record.step for record in found]
+            quiet = quiet_cutoff(found[:-1], thresholds.dataset, lengths, rounding=False)
+            cutoff = min(cutoff, quiet)
     chosen = Settings(cutoff=cutoff, thresholds=thresholds.dataset)
     return settings_of_swings(found[:-1], chosen, limits) if free else chosen

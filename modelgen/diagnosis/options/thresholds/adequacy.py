@@ -163,10 +163,16 @@ class AdequacyThresholds(Group):
         0.01, "probability", "A cause is reported as stable where records agree on its size (Wald).", JUDGED
     )
     min_explained_share: float = entry(
-        0.5,
-        "1",
-        "A cause is reported to explain most where it takes away so much of what repeats at its joints.",
-        JUDGED,
+        0.7,
+        "of what is not noise",
+        "Causes are suspects where those at a joint explain less of what is missing there together.",
+        STRANGERS,
+    )
+    usual_null_share: float = entry(
+        0.9,
+        "of complete models",
+        "What is left of a joint counts as more than noise where it repeats more than of so many.",
+        "240 simulated arms with nothing hidden",
     )
     max_counts_ratio: float = entry(
         1.25,

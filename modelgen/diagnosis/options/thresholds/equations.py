@@ -59,10 +59,17 @@ class EquationThresholds(Group):
         "A record of whose effort the model, fitted to it alone, leaves more at every joint is refused.",
         GUARD,
     )
+    max_turned_share: float = entry(
+        0.5,
+        "of the error",
+        "A record is refused whose efforts, turned round, leave less of this at a joint with the parameters "
+        "of the other records.",
+        JUDGED,
+    )
     max_driving_friction: float = entry(
         0.2,
         "of the power",
-        "A record in which friction would give a joint a larger share of its power is refused.",
+        "Records in which friction would give a joint a larger share of its power are refused.",
         GUARD,
     )
     min_position_steps: int = entry(
