@@ -211,6 +211,18 @@ def test_the_cut_off_falls_with_the_noise_of_the_positions() -> None:
     assert 1.25 <= found[2] < 0.5 * found[0]
 
 
+def test_the_noisiest_of_several_records_decides_the_cut_off() -> None:
+    rng = np.random.default_rng(6)
+    t = times(30.0, 500.0)
+    q = sum(np.sin(2 * np.pi * 0.1 * k * t + k) / k for k in range(1, 6))[:, None]
+    quiet, noisy = (Record("a", t, q + x * rng.normal(size=q.shape), q) for x in (1e-7, 1e-3))
+    alone = [choose(record).cutoff for record in (quiet, noisy)]
+    assert alone[1] < 0.5 * alone[0]
+    assert choose([quiet, noisy]).cutoff == choose([noisy, quiet]).cutoff == alone[1]
+    # a short record is not lost in the filter's ends: the band is as wide as it needs
+    assert choose([noisy.part(0, 1000), noisy]).cutoff > 2.0 * alone[1]
+
+
 def test_one_choice_serves_several_records(tmp_path: Path) -> None:
     record = recorded(tmp_path)
     quiet = record.part(0, 2000)

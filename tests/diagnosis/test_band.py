@@ -79,3 +79,25 @@ def test_errors_of_steps_repeat_with_the_motion() -> None:
     assert not repeating_errors(replace(other.equations, periods=[None, None])).any()
     exact = made(EXACT)
     assert not repeating_errors(exact.equations).any()
+
+
+def hummed(record: Record, size: float, seed: int) -> Record:
+    """Positions with noise that vibrate between 9 and 16 Hz, otherwise in every period."""
+    random = np.random.default_rng(seed)
+    waves = [
+        np.sin(2 * np.pi * f * record.t + phase)
+        for f, phase in zip(random.uniform(9.0, 16.0, 30), random.uniform(0.0, 6.3, 30), strict=True)
+    ]
+    q = record.q + size * np.sum(waves, axis=0)[:, None] / np.sqrt(15.0)
+    q = q + 0.03 * size * random.normal(size=q.shape)
+    return replace(record, q=q, motor=q * np.array([80.0, 60.0]), motor_side=(False, False))
+
+
+def test_where_nothing_repeats_the_band_ends_where_other_noise_begins() -> None:
+    """In records with periods the noise is measured instead."""
+    loud = [hummed(r, 3e-4, k) for k, r in enumerate(EXACT)]
+    once = [r.part(0, round(0.6 * len(r.t) / 3)) for r in loud]
+    calm = [r.part(0, round(0.6 * len(r.t) / 3)) for r in EXACT]
+    assert settings_for(loud, None, USUAL).cutoff == settings_for(calm, None, USUAL).cutoff == 18.0
+    assert 3.0 < (settings_for(once, None, USUAL).cutoff or 0.0) < 9.0
+    assert settings_for(once, 18.0, USUAL).cutoff == 18.0

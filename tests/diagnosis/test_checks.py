@@ -15,6 +15,7 @@ from modelgen.diagnosis.adequacy.checks import (
     admissible,
     confirmed,
     ended_by_suspects,
+    explains,
     significant,
 )
 from modelgen.diagnosis.adequacy.dominance import dominance
@@ -63,6 +64,24 @@ def test_a_law_outside_the_catalogue_lends_its_evidence_to_no_name(joint: int) -
     found = diagnose(ARM, with_force(records, joint, law), experiment=False)
     assert not found.causes
     assert found.verdict in ("suspected", "outside_catalogue")
+
+
+@pytest.mark.parametrize(("wave", "passed"), [(0.0, True), (0.8, False)])
+def test_a_law_that_leaves_much_of_what_repeats_lends_it_no_name(wave: float, passed: bool) -> None:
+    """A constant beside a wave over the position, that no cause explains; in noise of unit size."""
+    rows, q, periods = made(lambda x: 0.6 + wave * np.sin(5.0 * x))
+    equations, bare = equations_of(rows, periods), system_of(rows, periods=periods)
+    columns = [np.ones_like(x[:, :1])[:, None] for x in q]
+    gain = bare.gain(columns)
+    assert gain is not None
+    trial = FittedCandidate(Candidate("friction_offset", 1), {}, columns, gain)
+    system = system_of(rows, with_causes(equations, [trial]), periods)
+    check = explains(0, Selection([Cause(trial, gain.delta_bic, 5.0, 5.0)], system, []))
+    assert check.decides
+    assert check.passed is passed
+    assert gain.delta_bic > 50.0  # it has evidence all the same
+    nothing = system_of(rows, with_causes(equations, [trial]))
+    assert explains(0, Selection([Cause(trial, 0.0, 0.0, 0.0)], nothing, [])).passed is None
 
 
 def turn(*candidates: tuple[str, int | None, float, str, bool]) -> list[Ranked]:

@@ -67,8 +67,8 @@ def still(limits: Thresholds, share: float, count: int = 400) -> Any:
 
 
 def explaining(limits: Thresholds) -> Any:
-    """Whether a constant is said to explain a constant force."""
-    equations = known(limits)
+    """Whether a constant is said to explain most of a constant force and a wave over the position."""
+    equations = known(limits, lambda x: 0.3 + 0.3 * np.sin(5.0 * x))
     trial = law(equations, np.ones_like)
     system = System(equations, with_columns(equations, trial))
     return explains(0, Selection([Cause(trial, 0.0, 0.0, 0.0)], system, [])).passed
@@ -84,7 +84,7 @@ def stepped(limits: Thresholds) -> Any:
 
 def rounding(limits: Thresholds) -> Any:
     noisy = logs()[0].q + 1e-3 * default_rng(1).normal(size=logs()[0].q.shape)
-    return rounded(coarse(replace(logs()[0], q=noisy)), limits.equations)
+    return rounded(coarse(replace(logs()[0], q=noisy)), limits.equations).tolist()
 
 
 def of_links(limits: Thresholds) -> Any:
@@ -273,6 +273,7 @@ CASES: dict[str, tuple[Value, Seen]] = {
     "equations.min_equations_per_unknown": (50.0, lambda t: still(t, 0.1)),
     "equations.max_condition_number": (1.0, lambda t: refusal(lambda: check_excitation(real(t)))),
     "equations.max_unexplained_effort": (0.0, lambda t: refusal(lambda: check_efforts(real(t)))),
+    "equations.max_turned_share": (1e9, lambda t: refusal(lambda: check_efforts(real(t)))),
     "equations.max_driving_friction": (-1.0, lambda t: refusal(lambda: check_efforts(real(t)))),
     "equations.min_position_steps": (100_000, lambda t: counts(coarse(logs()[0]), t.equations).tolist()),
     "equations.near_step_ratio": (
@@ -354,7 +355,8 @@ CASES: dict[str, tuple[Value, Seen]] = {
     "adequacy.min_phase_rows": (1e6, repeats),
     "adequacy.min_scatter_rows": (1e6, repeats),
     "adequacy.null_share": (0.9, lambda t: like_delta_bic(t.adequacy)),
-    "adequacy.min_explained_share": (1.1, explaining),
+    "adequacy.min_explained_share": (0.3, explaining),
+    "adequacy.usual_null_share": (1.0, explaining),
     "adequacy.max_counts_ratio": (1.0, counted),
     "adequacy.bend_lengths": ((0.3, 0.6), bending),
     "adequacy.spot_length": (0.3, bending),
