@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from modelgen.diagnosis.options.thresholds.sources import JUDGED, SIMULATED, STRANGERS
+from modelgen.diagnosis.options.thresholds.sources import JUDGED, OTHERS, SIMULATED, STRANGERS
 from modelgen.thresholds import Group, entry
 
 
@@ -166,7 +166,7 @@ class AdequacyThresholds(Group):
         0.7,
         "of what is not noise",
         "Causes are suspects where those at a joint explain less of what is missing there together.",
-        STRANGERS,
+        OTHERS,
     )
     usual_null_share: float = entry(
         0.9,
