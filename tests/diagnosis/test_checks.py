@@ -84,6 +84,22 @@ def test_a_law_that_leaves_much_of_what_repeats_lends_it_no_name(wave: float, pa
     assert explains(0, Selection([Cause(trial, 0.0, 0.0, 0.0)], nothing, [])).passed is None
 
 
+@pytest.mark.parametrize("harmonic", [0.25, 1.0 / 3.0, 2.0])
+def test_a_wave_of_a_gear_s_stage_is_a_ripple(harmonic: float) -> None:
+    """A planet's carrier turns once in three or four turns of the motor."""
+    ratio = 80.0
+
+    def law(q: np.ndarray, dq: np.ndarray) -> np.ndarray:
+        return np.asarray(0.05 * np.sin(harmonic * ratio * q + 0.4))
+
+    found = diagnose(ARM, with_force(three(None, 1, 0.0, seed=12), 1, law), experiment=False)
+    (cause,) = found.causes
+    assert (cause.effect, cause.joint) == ("torque_ripple", 1)
+    found_there = cause.parameters["harmonic"]
+    assert found_there.std is not None
+    assert abs(found_there.value - harmonic) < 4.0 * found_there.std < 0.1 * harmonic
+
+
 def turn(*candidates: tuple[str, int | None, float, str, bool]) -> list[Ranked]:
     return [
         Ranked(effect, joint, evidence, 5.0, 5.0, refused, taken)

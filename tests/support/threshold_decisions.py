@@ -74,21 +74,6 @@ def searched(limits: Thresholds, effect: str) -> Any:
     return found and (found.gain.delta_bic, found.values)
 
 
-def turned(limits: Thresholds) -> Any:
-    """How often a wave that turns with the motor is tried where the residual repeats 2.4 times in a turn."""
-    equations = real(limits)
-    rows = [
-        replace(r, effort=r.effort + 0.5 * np.sin(2.4 * r.prepared.picked(r.prepared.motor)))
-        for r in equations.rows
-    ]
-    search = Search(System(equations.with_rows(rows)))
-    ripple = next(c for c in candidates(equations) if c.place == ("torque_ripple", 1))
-    ripple = replace(ripple, fixed={**ripple.fixed, "revolution": 2 * np.pi})
-    with patch.object(search, "_at", return_value=None) as tried:
-        search.trial(ripple)
-    return tried.call_count
-
-
 # Validation
 
 
@@ -369,7 +354,6 @@ def told_apart(limits: Thresholds) -> Any:
 CASES: dict[str, tuple[Value, Seen]] = {
     "candidates.min_refined_delta_bic": (-1e3, lambda t: searched(t, "stribeck_friction")),
     "candidates.wave_search_price": (50.0, lambda t: searched(t, "torque_ripple")),
-    "candidates.max_wave_deviation": (0.5, turned),
     "validation.min_measured_share": (
         9.0,
         lambda t: gates(t.with_values({"validation.min_agreement": 2.0})).refused,

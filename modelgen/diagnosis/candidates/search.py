@@ -231,12 +231,7 @@ class Search:
         price, worth = self.limits.wave_search_price, self.limits.min_refined_delta_bic
         step = np.pi / max(float(np.ptp(together[1])), 1e-12) if len(together[1]) else 0.0
         for wave in waves(together[0], together[1], together[2], cutoff, self.limits):
-            harmonic = wave / per_harmonic
-            if per_harmonic == 1.0:
-                # what turns with a motor repeats a whole number of times in its turn
-                harmonic = max(1.0, round(harmonic))
-                if abs(harmonic - wave) > max(2 * step, self.limits.max_wave_deviation * harmonic):
-                    continue
+            harmonic = wave / per_harmonic  # no whole number where a stage of a gear makes it
             found = self._at(candidate, {"harmonic": harmonic}, price)
             if found is not None and found.gain.delta_bic > worth:
                 width = step / 2 / per_harmonic

@@ -97,6 +97,7 @@ class FrictionOffset(Effect):
     seen_over = "position"
     text = "constant force while moving: asymmetric Coulomb friction or an offset of the current"
     finding = "a constant force acts in {drive} while it moves"
+    needs_drive = True  # a bearing alone is alike in both directions
     reference = "Khalil and Dombre 2002"
     exact = True
     confused_with = ("asymmetric_viscous_friction", "spring", "base_tilt")

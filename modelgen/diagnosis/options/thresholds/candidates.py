@@ -58,12 +58,6 @@ class CandidateThresholds(Group):
     wave_search_price: float = entry(
         3.0, "parameters", "A search over all wave numbers of a ripple costs as much as so many.", SIMULATED
     )
-    max_wave_deviation: float = entry(
-        0.02,
-        "of the wave number",
-        "What turns with a motor has a whole number of waves in a turn, to this accuracy.",
-        JUDGED,
-    )
     compliant_share: tuple[float, ...] = entry(
         (0.5, 2.0),
         "of what was simulated",
