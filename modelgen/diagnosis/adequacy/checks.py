@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from modelgen.diagnosis.adequacy.dominance import Dominance, dominance
-from modelgen.diagnosis.adequacy.free_form import FreeForm, free_forms
+from modelgen.diagnosis.adequacy.free_form import FreeForm, free_forms, further_terms
 from modelgen.diagnosis.adequacy.lack_of_fit import lack_of_fit, repeating
 from modelgen.diagnosis.candidates import with_causes
 from modelgen.diagnosis.equations import Equations
@@ -196,8 +196,9 @@ def explains(k: int, selection: Selection) -> Check:
     """Whether the causes at the joints of the cause k explain most of what is not noise there.
 
     What still repeats from period to period is not noise; what errors of the positions repeat is no lack of
-    the model. A law that stands in for one that the catalogue lacks leaves more than the law itself would.
-    Passed as well where no more repeats than noise leaves by chance.
+    the model, and what the further terms of a law that is the first ones of a series explain is its own,
+    where they are the lesser part. A law that stands in for one that the catalogue lacks leaves more than the
+    law itself would. Passed as well where no more repeats than noise leaves by chance.
     """
     system = selection.system
     equations, limits = system.equations, system.equations.thresholds.adequacy
@@ -209,10 +210,25 @@ def explains(k: int, selection: Selection) -> Check:
     sizes = mean_squares(system)
     bare = rmse(equations.rows, equations.columns, weighted_fit(equations.rows, equations.columns)) ** 2
     left = np.maximum(0.0, repeating(system) - _repeating_errors(equations))
+    left = np.maximum(0.0, left - _of_further_terms(selection, joints))
     gained, rest = (float((squares / sizes)[joints].sum()) for squares in (bare - sizes, left))
     found = gained / (gained + rest) if gained + rest > 0.0 else 0.0
     passed = found >= limits.min_explained_share or fit.usual(joints, limits.usual_null_share)
     return Check("explains", passed, True, found, limits.min_explained_share, text)
+
+
+def _of_further_terms(selection: Selection, joints: Sequence[int]) -> Array:
+    """Mean squares (n,) that the further terms of the laws at these joints explain beside all causes."""
+    system, sizes, found = selection.system, mean_squares(selection.system), np.zeros(selection.system.n)
+    most = system.equations.thresholds.adequacy.max_further_terms_share
+    for cause in selection.causes:
+        c = cause.trial.candidate
+        if c.joint is None or c.joint - 1 not in joints or not c.definition.series:
+            continue
+        best = max(further_terms(c.joint, system), key=lambda worth: worth.evidence)
+        if 0.0 < best.evidence < most * cause.delta_bic:
+            found[c.joint - 1] = sizes[c.joint - 1] * (1.0 - (1.0 - best.percent / 100.0) ** 2)
+    return found
 
 
 def _repeating_errors(equations: Equations) -> Array:

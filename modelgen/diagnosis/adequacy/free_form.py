@@ -11,9 +11,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from modelgen.diagnosis.adequacy.smooth_functions import SmoothFunction, functions, log_evidence
+from modelgen.diagnosis.adequacy.smooth_functions import SmoothFunction, Worth, functions, log_evidence
 from modelgen.diagnosis.candidates import system_of
 from modelgen.diagnosis.equations import Equations
+from modelgen.diagnosis.evidence import System
 from modelgen.diagnosis.selection import Selection, together
 
 
@@ -54,8 +55,7 @@ def free_forms(selection: Selection, equations: Equations) -> dict[int | None, F
         evidence = together(own, without, fair=True)
         rest = 0.0  # of the series, which is no other cause
         if any(t.candidate.definition.series for t in own):
-            series = _functions(joint - 1, equations, series=True)
-            rest = max(rest, *(log_evidence(shape, selection.system).evidence for shape in series))
+            rest = max(rest, *(worth.evidence for worth in further_terms(joint, selection.system)))
         most = max(limits.max_free_form_ahead, limits.max_free_form_share * max(evidence, 0.0))
         tried = []
         for shape in _functions(joint - 1, equations):
@@ -64,6 +64,11 @@ def free_forms(selection: Selection, equations: Equations) -> dict[int | None, F
             tried.append(FreeForm(ahead, most, beside, limits.min_free_form_beside))
         found[joint] = max(tried, key=lambda f: (f.better, f.ahead))
     return found
+
+
+def further_terms(joint: int, system: System) -> list[Worth]:
+    """Find what functions of a joint's position times its direction are worth beside the system's columns."""
+    return [log_evidence(shape, system) for shape in _functions(joint - 1, system.equations, series=True)]
 
 
 def _functions(j: int, equations: Equations, series: bool = False) -> Iterator[SmoothFunction]:

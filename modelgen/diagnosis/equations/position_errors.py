@@ -68,8 +68,8 @@ def blurred(prepared: Prepared, limits: EquationThresholds, which: NDArray[np.bo
     Where rounding is all the error that it has, the error of another rounding of the same motion: with the
     counts shifted by a part of one. A motion that takes many samples for a count keeps its error as long,
     and low frequencies hold more of it than of errors that are drawn sample by sample, as they are where
-    other noise moves the readings: white, and as large as their spectrum shows above the motion. which: of
-    these coordinates (n,) alone.
+    other noise moves the readings: white, and as large as their spectrum shows above the motion, in free
+    motions as large as a count. which: of these coordinates (n,) alone.
     """
     record = prepared.record
     random = np.random.default_rng(SEED)
@@ -84,6 +84,8 @@ def blurred(prepared: Prepared, limits: EquationThresholds, which: NDArray[np.bo
         if alone[j]:
             shifted = motion / count + random.uniform()
             error = (np.round(shifted) - shifted) * count
+        elif record.input is None:  # other noise of a free motion is all that its equations leave
+            error = random.uniform(-0.5, 0.5, len(q)) * count
         else:
             error = random.normal(0.0, white_noise(_logged(record, j), 1.0 / record.step), len(q))
         if side:

@@ -174,6 +174,12 @@ class AdequacyThresholds(Group):
         "What is left of a joint counts as more than noise where it repeats more than of so many.",
         "240 simulated arms with nothing hidden",
     )
+    max_further_terms_share: float = entry(
+        0.5,
+        "of its evidence",
+        "A law that is the first terms of a series owns what further ones explain where they have less.",
+        OTHERS,
+    )
     max_counts_ratio: float = entry(
         1.25,
         "1",
