@@ -26,6 +26,7 @@ from modelgen.diagnosis.candidates import FittedCandidate, asked, candidates, ch
 from modelgen.diagnosis.candidates.candidate import Candidate
 from modelgen.diagnosis.candidates.fitted import sensible
 from modelgen.diagnosis.candidates.periodogram import waves
+from modelgen.diagnosis.candidates.search import Search
 from modelgen.diagnosis.decision import _counted
 from modelgen.diagnosis.equations import Rows, bands, check_efforts, settings_for, study_of
 from modelgen.diagnosis.equations.checks import check_excitation, check_motion
@@ -72,6 +73,23 @@ def explaining(limits: Thresholds) -> Any:
     trial = law(equations, np.ones_like)
     system = System(equations, with_columns(equations, trial))
     return explains(0, Selection([Cause(trial, 0.0, 0.0, 0.0)], system, [])).passed
+
+
+def completed(limits: Thresholds) -> Any:
+    """Whether the first terms of a series explain most of friction that has a wave over the position."""
+    equations = real(limits)
+    rows = []
+    for r in equations.rows:
+        q, dq = (r.prepared.picked(x)[:, 0] for x in (r.prepared.q, r.prepared.dq))
+        force = 0.2 * np.sign(dq) * np.sin(6.0 * q + 1.0)
+        rows.append(replace(r, effort=r.effort + np.column_stack([force, 0.0 * force])))
+    equations = equations.with_rows(rows)
+    place = "position_dependent_friction", 1
+    candidate = next(c for c in candidates(equations) if c.place == place)
+    trial = Search(System(equations)).trial(candidate)
+    assert trial is not None
+    system = System(equations, with_columns(equations, trial))
+    return explains(0, Selection([Cause(trial, trial.gain.delta_bic, 0.0, 0.0)], system, [])).passed
 
 
 def stepped(limits: Thresholds) -> Any:
@@ -357,6 +375,7 @@ CASES: dict[str, tuple[Value, Seen]] = {
     "adequacy.null_share": (0.9, lambda t: like_delta_bic(t.adequacy)),
     "adequacy.min_explained_share": (0.3, explaining),
     "adequacy.usual_null_share": (1.0, explaining),
+    "adequacy.max_further_terms_share": (2.0, completed),
     "adequacy.max_counts_ratio": (1.0, counted),
     "adequacy.bend_lengths": ((0.3, 0.6), bending),
     "adequacy.spot_length": (0.3, bending),
