@@ -15,10 +15,12 @@ import subprocess
 import sys
 import time
 from collections import Counter
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
-from modelgen.fleet.overview import cause_bars
+from modelgen.figures import figure, svg
+from modelgen.fleet.overview import causes
 from modelgen.jobs import Where, run
 
 # Arm, effect, joint, magnitude: for an error up to 1.3 times as large, at the arms that they were tuned on.
@@ -39,6 +41,9 @@ HIDDEN = (
     ("direct2", "hard_spot", 1, 0.15),  # in no catalogue
 )
 ARMS = ("direct2", "levered2", "mixed2")
+# By joint; causes of the whole arm come last.
+_JOINTS = ("#123a66", "#4f8acb", "#a9cbee", "#d1661a", "#f0b27a", "#7a4a1d", "#666666")
+_ARM = "#8a4fa3"
 DRAWN = Path(__file__).resolve().parent.parent / "docs" / "fleet_causes.svg"
 PERIODS, RATE = 3, 250.0
 FLEET = """schema: 1
@@ -109,9 +114,39 @@ def main() -> None:
         rows.append(json.loads((out / "units" / name / "unit.json").read_text(encoding="utf-8"))["row"])
         counts[_kind(hidden), _judged(hidden, rows[-1])] += 1
     if given.units == parser.get_default("units"):
-        DRAWN.write_text(cause_bars(rows), encoding="utf-8", newline="\n")
+        DRAWN.write_text(_cause_bars(rows), encoding="utf-8", newline="\n")
     for (kind, judged), count in sorted(counts.items()):
         print(f"{kind:12} {judged:28} {count}")
+
+
+def _cause_bars(rows: Sequence[dict[str, Any]]) -> str:
+    """Named causes by effect, the joints in shades, as SVG."""
+    found = causes(rows)
+    effects = Counter[str]()
+    for (effect, _), count in found.items():
+        effects[effect] += count
+    order = sorted(effects, key=lambda name: (effects[name], name))
+    joints = sorted({joint for _, joint in found if joint is not None})
+    places: list[int | None] = [*joints, *([None] if any(joint is None for _, joint in found) else [])]
+    made, axes = figure(1, 1, (7.4, max(1.2, 0.2 + 0.2 * len(places), 0.7 + 0.27 * len(order))))
+    axis = axes[0, 0]
+    start = [0] * len(order)
+    for place in places:
+        widths = [found[effect, place] for effect in order]
+        colour = _ARM if place is None else _JOINTS[min(joints.index(place), len(_JOINTS) - 1)]
+        label = "whole arm" if place is None else f"joint {place}"
+        axis.barh(range(len(order)), widths, left=start, color=colour, height=0.72, label=label)
+        start = [a + b for a, b in zip(start, widths, strict=True)]
+    for k, total in enumerate(start):
+        axis.annotate(str(total), (total, k), (4, 0), textcoords="offset points", va="center")
+    axis.set_yticks(range(len(order)), order)
+    axis.legend(loc="center left", bbox_to_anchor=(1.01, 0.5), fontsize=8)
+    axis.set_xlim(0, 1.12 * max(start))
+    axis.set_xlabel("times named")
+    axis.xaxis.get_major_locator().set_params(integer=True)
+    axis.grid(False, axis="y")
+    axis.set_axisbelow(True)
+    return svg(made)
 
 
 def _kind(hidden: list[Any]) -> str:

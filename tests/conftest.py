@@ -10,6 +10,9 @@ import pytest
 for variable in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"):
     os.environ.setdefault(variable, "1")
 
+# A command that is slow on a busy machine says no more than on an idle one.
+os.environ.setdefault("MODELGEN_PROGRESS", "0")
+
 hypothesis.settings.register_profile("reproducible", derandomize=True, deadline=None)
 hypothesis.settings.load_profile("reproducible")
 

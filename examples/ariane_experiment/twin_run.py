@@ -49,7 +49,9 @@ def excited(part: str) -> Path:
     """Set-points of an optimised trajectory: 3 joints, 5 harmonics, 80 s, 10 Hz, the limits of Table III."""
     name = BUILD / f"{part}_trajectory.csv"
     seed = str(SEEDS[part])
-    modelgen("excite", str(ARMS), "--arm", ARM, "--starts", "4", "--seed", seed, "--out", str(name))
+    modelgen(
+        "excite", str(ARMS), "--arm", ARM, "--rate", "10", "--starts", "4", "--seed", seed, "--out", str(name)
+    )
     return name.with_name(f"{part}_trajectory_set_points.csv")
 
 

@@ -10,10 +10,12 @@ from modelgen.api.logs import Log, listed
 from modelgen.api.results import Named, Result, Table
 from modelgen.calibration import Calibration as Found
 from modelgen.calibration import Estimate, calibrated_yaml
-from modelgen.calibration.workflow import calibrate_log, data, picture
+from modelgen.calibration.workflow import calibrate_log, data
 from modelgen.description import Arm, loads
 from modelgen.effects import known_effects
 from modelgen.options import CalibrationOptions, changed
+from modelgen.report.calibration import picture, report
+from modelgen.report.words import joint_name
 
 
 class Calibration(Result):
@@ -67,7 +69,8 @@ class Calibration(Result):
         return {
             "calibration.json": json.dumps(self.to_json(), indent=2, allow_nan=False) + "\n",
             name: described,
-            "calibration.svg": picture(c),
+            "calibration.svg": picture(self.arm, c),
+            "report.html": report(self.arm, c),
         }
 
     def shown(self) -> Sequence[str | Table]:
@@ -80,7 +83,7 @@ class Calibration(Result):
         """
         c = self.found
         parts: list[str | Table] = [
-            f"{self.arm.name}, joint {c.joint}: "
+            f"{self.arm.name}, {joint_name(self.arm, c.joint)}: "
             f"RMSE of the angle {c.rms_before:.4g} -> {c.rms_after:.4g} rad "
             f"({c.improvement_percent:.1f} % better), {len(c.motor)} samples"
         ]
@@ -94,7 +97,7 @@ class Calibration(Result):
     def __repr__(self) -> str:
         c = self.found
         errors = f"RMSE {c.rms_before:.4g} -> {c.rms_after:.4g} rad"
-        return f"Calibration of {self.arm.name}, joint {c.joint}: {errors}"
+        return f"Calibration of {self.arm.name}, {joint_name(self.arm, c.joint)}: {errors}"
 
 
 def calibrate(

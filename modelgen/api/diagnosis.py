@@ -24,6 +24,7 @@ from modelgen.options import DiagnosisOptions, changed
 from modelgen.progress import Progress, silent
 from modelgen.report.diagnosis_sentences import assumptions, compared, harms, headline, suspicions
 from modelgen.report.experiment import followed
+from modelgen.report.words import at, joint_name, place_of, sized
 from modelgen.report.writing import write
 
 
@@ -104,7 +105,7 @@ class Diagnosis(Shown):
         """
         d = self.found
         parts: list[str | Table] = [headline(d)]
-        rows = [_row(c) for c in d.causes]
+        rows = [_row(d.arm, c) for c in d.causes]
         if rows:
             headings = (
                 "cause",
@@ -120,7 +121,7 @@ class Diagnosis(Shown):
         e = d.errors
         errors = [
             [
-                str(j + 1),
+                joint_name(d.arm, j + 1),
                 f"{e.before[j]:.4g}",
                 f"{e.after[j]:.4g}",
                 f"{e.gain[j]:.1f}",
@@ -222,10 +223,9 @@ def _place(text: str) -> tuple[str, int | None]:
     return name, int(joint) if colon else None
 
 
-def _row(c: NamedCause) -> list[str]:
-    values = ", ".join(f"{n} {e.value:.4g} {e.unit}".rstrip() for n, e in c.parameters.items())
-    rivals = ", ".join(f"{e} {j or 'arm'}" for e, j, _ in c.ambiguous_with)
-    same = ", ".join(f"{e} {j or 'arm'}" for e, j in c.aliases)
+def _row(arm: Arm, c: NamedCause) -> list[str]:
+    values = ", ".join(f"{n} {sized(e.value, e.unit, 4)}" for n, e in c.parameters.items())
+    rivals = ", ".join(at(arm, e, j) for e, j, _ in c.ambiguous_with)
+    same = ", ".join(at(arm, e, j) for e, j in c.aliases)
     gains = f"{c.cross_gain:.1f}", "" if isnan(c.share.gain) else f"{c.share.gain:.1f}"
-    place = "arm" if c.joint is None else str(c.joint)
-    return [c.effect, place, values, f"{c.delta_bic:.1f}", *gains, rivals, same]
+    return [c.effect, place_of(arm, c.joint), values, f"{c.delta_bic:.1f}", *gains, rivals, same]

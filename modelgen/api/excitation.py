@@ -15,6 +15,7 @@ from modelgen.files import check_folder, write_together
 from modelgen.numeric import Array
 from modelgen.options import ExcitationOptions, changed
 from modelgen.progress import Progress, silent
+from modelgen.report.excitation import picture, report
 
 
 class Excitation(Result):
@@ -66,9 +67,10 @@ class Excitation(Result):
         Returns
         -------
         mapping of str to str
-            Text by name: the trajectory, the set-points, JSON and a picture.
+            Text by name: the trajectory, the set-points, JSON, a picture and a page.
         """
-        return files(self.found, stem)
+        pages = {f"{stem}.svg": picture(self.found), f"{stem}.html": report(self.found, stem)}
+        return files(self.found, stem) | pages
 
     def write(self, folder: Path | str, stem: str = "trajectory") -> None:
         """Write the files of the command into a folder, all of them or none.

@@ -55,7 +55,8 @@ class Generated(Shown):
         }
 
     def shown(self) -> Sequence[str | Table]:
-        """The table of `modelgen generate`, a line of at most 80 columns per arm.
+        """The table of `modelgen generate`, a line of at most 60 columns per arm: numbers of joints, of
+        standard and of base parameters, operations (mul + add + neg) of the inverse dynamics, files.
 
         Returns
         -------
@@ -75,8 +76,8 @@ class Generated(Shown):
         columns = {
             "arm": "left",
             "joints": "right",
-            "parameters\nstandard → base": "right",
-            "inverse dynamics\nmul + add + neg": "right",
+            "std →\nbase": "right",
+            "inverse\ndynamics": "right",
             "files": "right",
         }
         return [Table("", columns, rows, ("arm",))]

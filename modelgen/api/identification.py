@@ -9,7 +9,8 @@ from typing import Any
 
 from modelgen.api.logs import Log, listed
 from modelgen.api.results import Named, Result, Table
-from modelgen.dataset import spectra_svg
+from modelgen.charts import sheet
+from modelgen.dataset import spectra
 from modelgen.description import Arm
 from modelgen.effects.editing import with_torque_constants
 from modelgen.functions.parameters_file import parameters_yaml
@@ -17,7 +18,8 @@ from modelgen.identification import Estimate, Validation
 from modelgen.identification.workflow import Outcome, identify_logs
 from modelgen.options import IdentificationOptions, changed
 from modelgen.progress import Progress, silent
-from modelgen.report.identification import models, page, predictions, table
+from modelgen.report.identification import models, picture, report, table
+from modelgen.report.words import joint_name, joint_names
 
 
 class Identification(Result):
@@ -67,15 +69,15 @@ class Identification(Result):
     @cached_property
     def _files(self) -> dict[str, str]:
         o, found, data = self.outcome, self.outcome.found, self.outcome.data
-        name, spectra = found.arm.name, spectra_svg(o.first)
+        name, drawn = found.arm.name, spectra(o.first)
         files = {
             "identification.json": json.dumps(data, indent=2, allow_nan=False) + "\n",
             f"{name}_parameters.yaml": parameters_yaml(name, {e.name: e.value for e in found.estimates}),
-            "spectra.svg": spectra,
-            "report.html": page(found, o.others, data["verdict"], _processing(o), spectra),
+            "spectra.svg": sheet(drawn, 2),
+            "report.html": report(found, o.others, data["verdict"], _processing(o), drawn),
         }
         if found.test is not None:
-            files["test.svg"] = predictions(found.test, o.others)
+            files["test.svg"] = picture(found.test, joint_names(found.arm), o.others)
         if found.gains:
             constants = {g.joint: g.value for g in found.gains}
             files[f"{name}_identified.yaml"] = with_torque_constants(found.arm, constants)
@@ -105,14 +107,15 @@ class Identification(Result):
         parts: list[str | Table] = [Table("", dict.fromkeys(headings, "right"), rows)]
         if found.gains:
             rows = [
-                [str(g.joint), f"{g.described:.6g}", f"{g.value:.6g}", f"{g.std:.2g}"] for g in found.gains
+                [joint_name(self.arm, g.joint), f"{g.described:.6g}", f"{g.value:.6g}", f"{g.std:.2g}"]
+                for g in found.gains
             ]
             columns = dict.fromkeys(("joint", "described", "found", "std"), "right")
             parts.append(Table("torque constants", columns, rows))
         if found.test is not None:
             parts += _test_tables(found.test, o)
         if o.folds is not None:
-            heads = {"held out": "left"} | {f"joint {j + 1}": "right" for j in range(len(o.folds.rmse))}
+            heads = {"held out": "left"} | dict.fromkeys(joint_names(self.arm), "right")
             rows = [[name, *(f"{x:.1f}" for x in part.nrmse_percent)] for name, part in o.folds.parts]
             rows.append(["all together", *(f"{x:.1f}" for x in o.folds.nrmse_percent)])
             title = "NRMSE % of parts of the training records, each held out in its turn"
@@ -178,11 +181,14 @@ def _processing(o: Outcome) -> list[str]:
 
 
 def _test_tables(test: Validation, o: Outcome) -> list[str | Table]:
-    rows = [[str(j + 1), a, test.unit[j], b] for j, (a, b) in enumerate(table(test))]
+    names = joint_names(o.found.arm)
+    rows = [[names[j], a, test.unit[j], b] for j, (a, b) in enumerate(table(test))]
     columns = dict.fromkeys(("joint", "RMSE", "unit", "NRMSE %"), "right")
     parts: list[str | Table] = [Table("test records", columns, rows)]
     if o.others:
-        heads = {"model": "left"} | {f"joint {j + 1} [{unit}]": "right" for j, unit in enumerate(test.unit)}
+        heads = {"model": "left"} | {
+            f"{name} [{unit}]": "right" for name, unit in zip(names, test.unit, strict=True)
+        }
         rows = [[name, *cells] for name, cells in models(test, o.others)]
         title = "RMSE on the test records (NRMSE %), and what the described drives change"
         parts.append(Table(title, heads, rows))

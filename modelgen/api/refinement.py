@@ -12,9 +12,11 @@ from modelgen.description import Arm
 from modelgen.functions.parameters_file import parameters_yaml
 from modelgen.identification.output_error.refine import Refined
 from modelgen.identification.output_error.refine import Refinement as Found
-from modelgen.identification.refinement import picture, refine_logs, to_json
+from modelgen.identification.refinement import refine_logs, to_json
 from modelgen.options import RefinementOptions, changed
 from modelgen.progress import Progress, silent
+from modelgen.report.refinement import picture, report
+from modelgen.report.words import joint_names
 
 
 class Refinement(Result):
@@ -66,6 +68,7 @@ class Refinement(Result):
                 name, {x.name: x.value for x in self.found.parameters}
             ),
             "refinement.svg": picture(self.found),
+            "report.html": report(self.found),
         }
 
     def shown(self) -> Sequence[str | Table]:
@@ -82,7 +85,8 @@ class Refinement(Result):
         ]
         keys = ("f_gof_before", "f_gof", "rmse_before", "rmse")
         joints = [
-            [str(j["joint"]), *(f"{j[k]:.4g}" for k in keys), j["unit"]] for j in self.to_json()["joints"]
+            [name, *(f"{j[k]:.4g}" for k in keys), j["unit"]]
+            for name, j in zip(joint_names(self.arm), self.to_json()["joints"], strict=True)
         ]
         headings = ("joint", "F_gof % before", "after", "RMSE before", "after ", "unit")
         parameters = dict.fromkeys(("parameter", "start", "value", "std", "unit"), "right")

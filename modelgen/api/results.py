@@ -28,6 +28,13 @@ class Table:
     rows: Sequence[Sequence[str]]
     names: Collection[str] = ()
 
+    def filled(self) -> Table:
+        """Without the columns in which every cell is empty."""
+        kept = [k for k in range(len(self.columns)) if not self.rows or any(row[k] for row in self.rows)]
+        columns = list(self.columns.items())
+        rows = [[row[k] for k in kept] for row in self.rows]
+        return Table(self.title, dict(columns[k] for k in kept), rows, self.names)
+
     def html(self) -> str:
         """The table as HTML."""
         head = "".join(f"<th>{escape(name)}</th>" for name in self.columns)

@@ -211,7 +211,12 @@ def _scores(s: Simulated) -> list[str | Table]:
     rows = []
     for name, joints in [*parts, ("mean of all" if several else "", data["joints"])]:
         for j in joints:
-            row = [str(j["joint"]), _cell(j["f_gof_percent"], 2), _cell(j["mae"], 6), _cell(j["rmse"], 6)]
+            row = [
+                s.plant.names[j["joint"] - 1],
+                _cell(j["f_gof_percent"], 2),
+                _cell(j["mae"], 6),
+                _cell(j["rmse"], 6),
+            ]
             rows.append([*([name] if several else []), *row, j["unit"]])
     shown: list[str | Table] = [Table("", columns, rows)]
     if several:

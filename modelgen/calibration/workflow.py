@@ -1,4 +1,4 @@
-"""A calibration from a log to a lever, and what it says as data and as a picture."""
+"""A calibration from a log to a lever, and what it says as data."""
 
 from __future__ import annotations
 
@@ -11,7 +11,6 @@ from modelgen.calibration.lever import lever_of
 from modelgen.dataset import read_columns
 from modelgen.description import Arm
 from modelgen.errors import InputError
-from modelgen.figures import COLOURS, figure, svg
 from modelgen.options import CalibrationOptions
 
 
@@ -60,21 +59,3 @@ def data(arm: Arm, c: Calibration) -> dict[str, Any]:
         "samples_per_independent_one": c.correlation,
         "not_determined": list(c.weak),
     }
-
-
-def picture(c: Calibration) -> str:
-    """Measured angle and the errors of both levers over the motor coordinate, as SVG."""
-    order = np.argsort(c.motor, kind="stable")
-    x = c.motor[order]
-    made, axes = figure(2, 1, (7.0, 5.0))
-    angle, error = axes[0][0], axes[1][0]
-    angle.plot(x, np.degrees(c.measured[order]), ".", ms=2, color=COLOURS[4], label="measured")
-    for lever, name, colour in ((c.before, "as described", COLOURS[0]), (c.after, "calibrated", COLOURS[1])):
-        q = lever.angle(x)
-        angle.plot(x, np.degrees(q), color=colour, label=name)
-        error.plot(x, np.degrees(c.measured[order] - q), ".", ms=2, color=colour, label=name)
-    angle.set_ylabel(f"q{c.joint} [deg]")
-    error.set_ylabel("error [deg]")
-    error.set_xlabel(f"qm{c.joint} [motor unit]")
-    angle.legend()
-    return svg(made)

@@ -38,6 +38,7 @@ class Chart:
     """One panel. x_label, y_label: with the unit in brackets. text: what it shows, for who cannot see it.
 
     zoom: the page lets its abscissa be enlarged. y_range: of the ordinate; by default what the curves span.
+    logarithmic: both axes are.
     """
 
     title: str
@@ -48,12 +49,21 @@ class Chart:
     bands: Sequence[Band] = ()
     zoom: bool = False
     y_range: tuple[float, float] | None = None
+    logarithmic: bool = False
 
     def spans(self) -> tuple[tuple[float, float], tuple[float, float]]:
         """Lowest and highest abscissa and ordinate of what is finite, apart where they are one."""
-        x = [c.x for c in self.curves]
-        y = [c.y for c in self.curves] + [np.array([b.low, b.high]) for b in self.bands]
-        return _span(x, 0.0), self.y_range or _span(y, 0.05)
+        x = [self.along(c.x) for c in self.curves]
+        y = [self.along(c.y) for c in self.curves] + [np.array([b.low, b.high]) for b in self.bands]
+        limits = None if self.y_range is None else self.along(np.array(self.y_range))
+        return _span(x, 0.0), _span(y, 0.05) if limits is None else (float(limits[0]), float(limits[1]))
+
+    def along(self, values: Array) -> Array:
+        """Where values (N,) lie along an axis: themselves, or their decimal logarithms."""
+        if not self.logarithmic:
+            return np.asarray(values, dtype=float)
+        with np.errstate(divide="ignore", invalid="ignore"):
+            return np.asarray(np.log10(values))
 
 
 def labels(charts: Sequence[Chart]) -> list[tuple[str, str, bool]]:

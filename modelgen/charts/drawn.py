@@ -24,8 +24,7 @@ def drawn(chart: Chart, size: tuple[int, int] = (WIDTH, HEIGHT)) -> str:
     """
     width, height = size
     (x0, x1), (y0, y1) = chart.spans()
-    y_ticks = ticks(y0, y1, 4)
-    y_words = written(y_ticks)
+    y_ticks, y_words = _ticks(chart, y0, y1, 4)
     left = 10 + int(_LETTER * max((len(w) for w in y_words), default=1))
     wide, high = width - left - _RIGHT, height - _TOP - _BOTTOM
 
@@ -42,12 +41,11 @@ def drawn(chart: Chart, size: tuple[int, int] = (WIDTH, HEIGHT)) -> str:
     ]
     for value, word in zip(y_ticks, y_words, strict=True):
         at = _TOP + float(down(np.array(value)))
-        strong = " zero" if abs(value) < _TOUCH * (y1 - y0) else ""
+        strong = " zero" if not chart.logarithmic and abs(value) < _TOUCH * (y1 - y0) else ""
         parts.append(f'<path class="grid{strong}" d="M{left} {at:.1f}h{wide}"/>')
         parts.append(f'<text class="tick" x="{left - 5}" y="{at + 4:.1f}" text-anchor="end">{word}</text>')
     parts.append('<g class="abscissa">')
-    x_ticks = ticks(x0, x1, 6)
-    for value, word in zip(x_ticks, written(x_ticks), strict=True):
+    for value, word in zip(*_ticks(chart, x0, x1, 6), strict=True):
         at = left + float(across(np.array(value)))
         parts.append(f'<path class="grid" d="M{at:.1f} {_TOP}v{high}"/>')
         parts.append(
@@ -61,7 +59,7 @@ def drawn(chart: Chart, size: tuple[int, int] = (WIDTH, HEIGHT)) -> str:
             f'<rect class="band" x="0" y="{top:.1f}" width="{wide}" height="{max(bottom - top, 0.5):.1f}"/>'
         )
     for curve in chart.curves:
-        x, y = across(np.asarray(curve.x, dtype=float)), down(np.asarray(curve.y, dtype=float))
+        x, y = across(chart.along(curve.x)), down(chart.along(curve.y))
         path = dots(x, y) if curve.dots else line(x, y)
         kind = "dots" if curve.dots else "line"
         parts.append(f'<path class="{kind} {curve.role}" transform="scale(.1)" d="{path}"/>')
@@ -73,3 +71,12 @@ def drawn(chart: Chart, size: tuple[int, int] = (WIDTH, HEIGHT)) -> str:
         f"{escape(chart.x_label)}</text></svg>"
     )
     return "".join(parts)
+
+
+def _ticks(chart: Chart, low: float, high: float, about: int) -> tuple[list[float], list[str]]:
+    """Places along an axis and what is written there: of a logarithmic one whole powers of ten."""
+    if not chart.logarithmic:
+        places = ticks(low, high, about)
+        return places, written(places)
+    places = [p for p in ticks(low, high, about) if abs(p - round(p)) < _TOUCH]
+    return places, [f"{10.0 ** round(p):g}" for p in places]

@@ -4,16 +4,22 @@ from __future__ import annotations
 
 import math
 
+_LEAST = 3  # ticks of an axis
+_WIDER = 2.0  # than asked for a step may be
 _LARGE, _SMALL = 1e5, 1e-4  # beyond which numbers are written with an exponent
 
 
 def ticks(low: float, high: float, about: int) -> list[float]:
-    """Multiples of 1, 2 or 5 times a power of ten within [low, high], about that many."""
+    """Multiples of 1, 2 or 5 times a power of ten within [low, high]: about that many, three at least."""
     rough = (high - low) / max(about, 1)
     power = 10.0 ** math.floor(math.log10(rough))
-    step = next(m * power for m in (1.0, 2.0, 5.0, 10.0) if m * power >= rough * 0.999)
-    first, last = math.ceil(low / step - 1e-9), math.floor(high / step + 1e-9)
-    return [k * step for k in range(first, last + 1)]
+    found: list[float] = []
+    for step in (m * power for m in (10.0, 5.0, 2.0, 1.0, 0.5)):
+        first, last = math.ceil(low / step - 1e-9), math.floor(high / step + 1e-9)
+        found = [k * step for k in range(first, last + 1)]
+        if len(found) >= _LEAST and step <= rough * _WIDER:
+            break
+    return found
 
 
 def written(values: list[float]) -> list[str]:

@@ -3,15 +3,20 @@
 from __future__ import annotations
 
 import json
+import os
 import sys
+import threading
+import time
 from collections.abc import Iterator
 from contextlib import contextmanager
+from textwrap import wrap
 from typing import Any, Literal
 
 import typer
 from rich import box
 from rich.console import Console
 from rich.markup import escape
+from rich.measure import Measurement
 from rich.progress import (
     BarColumn,
     MofNCompleteColumn,
@@ -24,9 +29,12 @@ from rich.progress import Progress as Bar
 from rich.table import Table as Grid
 
 from modelgen.api.results import Shown, Table
-from modelgen.progress import Progress
+from modelgen.progress import Progress, silent
 
 _WIDTH = 120  # columns where stdout is no terminal
+_NOTHING: tuple[str, float, float | None] = ("", 0.0, None)
+_ENDLESS = 10_000  # columns, more than any table has
+_EVERY = 20.0  # seconds between two lines on the progress
 
 
 def print_result(result: Shown, *, as_json: bool) -> None:
@@ -42,20 +50,57 @@ def print_result(result: Shown, *, as_json: bool) -> None:
 
 
 def print_table(table: Table) -> None:
-    """A table on stdout."""
-    grid = Grid(
-        title=escape(table.title) or None, title_justify="left", box=box.SIMPLE_HEAD, title_style="bold"
-    )
-    for heading, side in table.columns.items():
-        justify: Literal["left", "right"] = "right" if side == "right" else "left"
-        grid.add_column(heading, justify=justify, overflow="fold", no_wrap=heading in table.names)
-    for row in table.rows:
-        # Text of the user is no markup.
-        grid.add_row(*(cell.replace("[", "\\[") for cell in row))
-    console = Console(width=None if sys.stdout.isatty() else _WIDTH)
+    """A table on stdout, as wide as the terminal or COLUMNS; without its empty columns.
+
+    Where its words would have to be broken, its rows stand below each other, a line for each column.
+    """
+    table = table.filled()
+    console = Console(width=_width())
+    grid = _grid(table)
+    if Measurement.get(console, console.options.update(max_width=_ENDLESS), grid).minimum > console.width:
+        typer.echo(_below(table, console.width))
+        return
     with console.capture() as captured:
         console.print(grid)
     typer.echo("\n".join(line.rstrip() for line in captured.get().rstrip("\n").split("\n")))
+
+
+def _width() -> int | None:
+    """Columns of the output: those of COLUMNS, else of the terminal (None), else 120."""
+    asked = os.environ.get("COLUMNS", "")
+    if asked.isdecimal() and int(asked) > 0:
+        return int(asked)
+    return None if sys.stdout.isatty() else _WIDTH
+
+
+def _below(table: Table, width: int) -> str:
+    """A line or more for each filled cell, rows apart."""
+    headings = [" ".join(heading.split()) for heading in table.columns]
+    wide = max(map(len, headings))
+    lines = [table.title] if table.title else []
+    for row in table.rows:
+        lines.append("")
+        for heading, cell in zip(headings, row, strict=True):
+            if cell:
+                head, more = f"  {heading:<{wide}}  ", " " * (wide + 4)
+                lines += wrap(cell, width, initial_indent=head, subsequent_indent=more)
+    return "\n".join(lines)
+
+
+def _grid(table: Table) -> Grid:
+    grid = Grid(
+        title=escape(table.title) or None, title_justify="left", box=box.SIMPLE_HEAD, title_style="bold"
+    )
+    for k, (heading, side) in enumerate(table.columns.items()):
+        justify: Literal["left", "right"] = "right" if side == "right" else "left"
+        words = (word for cell in (heading, *(row[k] for row in table.rows)) for word in cell.split())
+        longest = max(map(len, words), default=1)
+        named = heading in table.names
+        grid.add_column(heading, justify=justify, overflow="fold", no_wrap=named, min_width=longest)
+    for row in table.rows:
+        # Text of the user is no markup.
+        grid.add_row(*(cell.replace("[", "\\[") for cell in row))
+    return grid
 
 
 def print_json(data: Any) -> None:
@@ -65,14 +110,56 @@ def print_json(data: Any) -> None:
 
 @contextmanager
 def progress_bar(*, counted: bool = True) -> Iterator[Progress]:
-    """A bar on stderr where that is a terminal. counted: shows how many of how many, else the share."""
+    """A bar on stderr where that is a terminal, else a line with the stage every 20 s.
+
+    The environment's MODELGEN_PROGRESS sets other seconds, 0 for no lines. counted: shows how many of how
+    many, else the share.
+    """
     console = Console(stderr=True)
+    if not console.is_terminal:
+        with _progress_lines(_seconds()) as lines:
+            yield lines
+        return
     how: ProgressColumn = MofNCompleteColumn() if counted else TaskProgressColumn()
     columns = TextColumn("{task.description}"), BarColumn(), how, TimeRemainingColumn()
-    with Bar(*columns, console=console, transient=True, disable=not console.is_terminal) as bar:
+    with Bar(*columns, console=console, transient=True) as bar:
         task = bar.add_task("", total=None)
 
         def progress(text: str, done: float, total: float | None) -> None:
             bar.update(task, description=text, completed=done, total=total)
 
         yield progress
+
+
+def _seconds() -> float:
+    """Between two lines on the progress; 20 where MODELGEN_PROGRESS says nothing that can be read."""
+    try:
+        return max(0.0, float(os.environ.get("MODELGEN_PROGRESS", _EVERY)))
+    except ValueError:
+        return _EVERY
+
+
+@contextmanager
+def _progress_lines(every: float) -> Iterator[Progress]:
+    """A line on stderr every so many seconds: the time since the begin, the stage, how much is done."""
+    begin, stage, ended = time.monotonic(), [_NOTHING], threading.Event()
+    if not every:
+        yield silent
+        return
+
+    def progress(text: str, done: float, total: float | None) -> None:
+        stage[0] = (text, done, total)
+
+    def report() -> None:
+        while not ended.wait(every):
+            text, done, total = stage[0]
+            share = f", {100.0 * done / total:.0f} %" if total else ""
+            typer.echo(f"{time.monotonic() - begin:.0f} s: {text or 'working'}{share}", err=True)
+
+    lines = threading.Thread(target=report, daemon=True)
+    lines.start()
+    try:
+        yield progress
+    finally:
+        ended.set()
+        lines.join()

@@ -4,7 +4,7 @@ from modelgen.dataset.drives import NumericDrive, drives_of
 from modelgen.dataset.objects import Record
 from modelgen.dataset.processing.prepare import Prepared, prepare
 from modelgen.dataset.processing.settings import PRESETS, Chosen, Settings, choose, preset
-from modelgen.dataset.processing.spectra import described, spectra_svg
+from modelgen.dataset.processing.spectra import described, spectra, spectra_svg
 from modelgen.dataset.reading.column_table import ColumnTable, Log, named
 from modelgen.dataset.reading.gathering import check_different, gather, several
 from modelgen.dataset.reading.read import read
@@ -39,6 +39,7 @@ __all__ = [
     "read",
     "read_columns",
     "several",
+    "spectra",
     "spectra_svg",
     "split",
 ]

@@ -21,7 +21,7 @@ class DatasetThresholds(Group):
     max_jitter: float = entry(
         0.02,
         "sampling periods",
-        "Stamps that stay this near to a uniform axis are taken as uniform, and nothing is resampled.",
+        "Stamps that stay this near to a uniform axis count as uniform, and nothing is resampled.",
         _CHOICE,
     )
     max_spline_jitter: float = entry(
@@ -51,11 +51,11 @@ class DatasetThresholds(Group):
     even_roughness: float = entry(
         0.5,
         "1",
-        "Samples are taken as evenly spaced where positions are so much smoother than over the stamps.",
+        "Samples count as evenly spaced where positions are so much smoother than over the stamps.",
         _CHOICE,
     )
     min_refreshes: int = entry(
-        60, "readings", "Repeated readings are told by so many new ones at least.", _GUARD
+        60, "readings", "Repeated readings are recognised by so many new ones at least.", _GUARD
     )
     min_repeats: float = entry(
         1.9, "rows", "Readings repeat where a new one comes after so many rows at least.", _GUARD
@@ -89,7 +89,7 @@ class DatasetThresholds(Group):
     lone_reading: float = entry(
         20.0,
         "of the 99 % quantile",
-        "A reading farther from the cubic through the four beside it is lone, and taken as they say.",
+        "A reading farther from the cubic through the four beside it is lone, and read as they say.",
         "no position of the example logs has one; an encoder's bit that is read wrongly is larger",
     )
     lone_effort: float = entry(
@@ -233,7 +233,7 @@ class DatasetThresholds(Group):
     short_rest_cutoff_periods: float = entry(
         0.05,
         "periods of the cut-off",
-        "Samples of a rest that lasts longer are taken out of effort and columns before the parallel filter.",
+        "Samples of a rest that lasts longer leave effort and columns before the parallel filter.",
         "a shorter rest leaves nothing in what the filter lets pass",
     )
     min_rows: int = entry(

@@ -125,7 +125,7 @@ def _with_article(kind: str) -> str:
 def _parse(text: str, unit: bool) -> ast.expr:
     foreign = _FOREIGN.search(text)
     if foreign:
-        raise ExpressionError(f"{foreign[0]!r} cannot stand in an expression{_HINTS.get(foreign[0], '')}")
+        raise ExpressionError(f"{foreign[0]!r} cannot be part of an expression{_HINTS.get(foreign[0], '')}")
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")

@@ -67,7 +67,7 @@ def arm_name_problem(name: str) -> str | None:
 def symbol_name_problem(name: str) -> str | None:
     """Say why a geometry symbol cannot have this name, None where it can."""
     if name == "pi" or name in FUNCTIONS:
-        return f"'{name}' is taken by the expressions themselves, choose another name"
+        return f"'{name}' belongs to the expressions themselves, choose another name"
     if name in UNITS:
         return f"'{name}' is a unit, choose another name"
     if name in C_KEYWORDS or keyword.iskeyword(name):

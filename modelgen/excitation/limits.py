@@ -47,7 +47,7 @@ def bounds(arm: Arm, settings: ExcitationOptions) -> tuple[list[Bound], list[str
                     joint.where,
                 )
             position = (-math.pi, math.pi)
-            remarks.append(f"{joint.name} has no limits: {{position: ...}}; -180 to 180 deg are taken")
+            remarks.append(f"{joint.name} has no limits: {{position: ...}}; -180 to 180 deg are used")
         if position is not None:
             found.append(Bound("q", n, *position))
         motor = joint.drive.limits

@@ -1,4 +1,4 @@
-"""An excitation trajectory as text: tables for the controller, JSON, a picture."""
+"""An excitation trajectory as text: tables for the controller, JSON."""
 
 from __future__ import annotations
 
@@ -8,7 +8,6 @@ from typing import Any
 import numpy as np
 
 from modelgen.dataset import drives_of
-from modelgen.excitation.pictures import picture
 from modelgen.excitation.run import Excitation
 from modelgen.numeric import Array
 
@@ -101,5 +100,4 @@ def files(e: Excitation, stem: str) -> dict[str, str]:
         f"{stem}.csv": trajectory(e),
         f"{stem}_set_points.csv": set_points(e),
         f"{stem}.json": json.dumps(data(e), indent=2, allow_nan=False) + "\n",
-        f"{stem}.svg": picture(e),
     }

@@ -99,7 +99,7 @@ def _changed(model: Model, states: States, given: Mapping[str, float], values: V
     joint = model.arm.joints[model.arm.coordinates[n]]
     unit = "N" if joint.type == "prismatic" else "N m"
     return [
-        "no bodies that could exist have these parameters: the nearest are taken, whose efforts are at most "
+        "no bodies that could exist have these parameters: the nearest are used, whose efforts are at most "
         f"{apart[n]:.2g} {unit} off ({joint.name}, {part[n]:.1%} of its largest), and parameters {share:.1%} "
         f"({worst})"
     ]

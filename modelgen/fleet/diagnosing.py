@@ -103,6 +103,7 @@ def _found(d: Diagnosis) -> Row:
         "reason": said["reason"],
         "causes": [c["effect"] for c in said["causes"]],
         "joints": [c["joint"] for c in said["causes"]],
+        "joint_names": [c["joint_name"] for c in said["causes"]],
         "delta_bic": [c["evidence"]["delta_bic"] for c in said["causes"]],
         "cross_gain_percent": [c["evidence"]["cross_gain_percent"] for c in said["causes"]],
         "ambiguous_with": [_places(c["ambiguous_with"]) for c in said["causes"]],
@@ -119,6 +120,7 @@ def _found(d: Diagnosis) -> Row:
         "error_after": error["after"],
         "gain_percent": error["gain_percent"],
         "best_gain_percent": max(gains) if gains and said["causes"] else None,
+        "overall_gain_percent": error["overall_gain_percent"],
         "parameters": [
             {"name": name, "value": rounded(e.value), "std": rounded(e.std), "unit": e.unit}
             for name, e in d.parameters.items()

@@ -69,7 +69,7 @@ def _check(one: Combined, known: Mapping[str, Function]) -> None:
     if one.name in TAKEN or one.name in known or one.name.startswith("lanes_") or one.name.endswith(ENDS):
         listed = ", ".join(ENDS)
         raise InputError(
-            f"'{one.name}' is taken or ends in one of {listed}; choose another name",
+            f"'{one.name}' is in use or ends in one of {listed}; choose another name",
             one.at,
         )
     for k, name in enumerate(one.functions):

@@ -62,6 +62,22 @@ def nominal_base(model: Model) -> dict[str, float]:
     return grouped(model, list(nominal_standard(model).values()))
 
 
+def known_base(model: Model) -> dict[str, float]:
+    """Nominal base parameters by name, of those alone to which the description gives every part."""
+    values = {
+        f"{name}{i + 1}": value
+        for i, link in enumerate(model.arm.links)
+        if link is not None
+        for name, value in about_origin(link).items()
+    }
+    for effect in applied_effects(model.arm):
+        for parameter, symbol in effect.parameters:
+            if parameter.name in effect.nominal:
+                values[symbol.name] = effect.nominal[parameter.name]
+    found = grouped(model, [values.get(p.name, np.nan) for p in model.standard])
+    return {name: value for name, value in found.items() if np.isfinite(value)}
+
+
 def grouped(model: Model, standard: Sequence[float]) -> dict[str, float]:
     """Base parameters by name that the standard vector gives, both in the model's order."""
     return base_of(model.grouping, model.arm, standard)

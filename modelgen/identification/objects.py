@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+import numpy as np
+
 from modelgen.description import Arm
 from modelgen.functions import Model
 from modelgen.identification.consistent import Consistent
@@ -14,6 +16,7 @@ from modelgen.options.noise import Noise
 from modelgen.regression.least_squares import Solution
 
 POOR = 30.0  # % of relative standard deviation from which a parameter is called poorly determined
+MATTERS = 1.0  # % of the effort: a parameter whose standard deviation moves less is determined well enough
 
 
 @dataclass(frozen=True)
@@ -44,7 +47,7 @@ class Validation:
     """On test records, by joint, in the unit that the log carried: rmse (n,), nrmse (n,) in % of the effort.
 
     t: (M,) [s]; measured, predicted: (M, n), records one after the other. rows: (n,), how many were judged.
-    noise: of the inputs there.
+    noise: of the inputs there. sizes: (n, p), RMS of what one unit of each parameter adds to the efforts.
     """
 
     unit: tuple[str, ...]
@@ -55,6 +58,23 @@ class Validation:
     measured: Array
     predicted: Array
     noise: Noise | None = None
+    sizes: Array | None = None
+
+    def shown_by(self, k: int) -> int | None:
+        """Joint (from 0) in whose effort parameter k weighs most; None where it shows in none."""
+        if self.sizes is None:
+            return None
+        whole = np.sqrt(np.mean(self.measured**2, axis=0))
+        shares = self.sizes[:, k] / np.where(whole > 0.0, whole, np.inf)
+        return int(np.argmax(shares)) if shares.any() else None
+
+    def in_effort(self, k: int, value: float) -> tuple[float, float]:
+        """RMS of the effort that `value` of parameter k adds where it shows, and its share in % of all."""
+        j = self.shown_by(k)
+        if j is None or self.sizes is None:
+            return 0.0, 0.0
+        size = float(abs(value) * self.sizes[j, k])
+        return size, 100.0 * size / float(np.sqrt(np.mean(self.measured[:, j] ** 2)))
 
 
 @dataclass(frozen=True)
@@ -75,3 +95,16 @@ class Identification:
     comparison: Comparison | None = None
     gains: tuple[Gain, ...] = ()
     doubts: tuple[str, ...] = ()
+
+    def poor(self) -> list[tuple[int, Estimate]]:
+        """Parameters that are poorly determined, with their numbers: of themselves and in the effort, where a
+        test record says so.
+        """
+        found = []
+        for k, e in enumerate(self.estimates):
+            if e.std is None or e.dropped or (e.relative is not None and e.relative <= POOR):
+                continue
+            known = self.test is not None and self.test.sizes is not None
+            if not known or (self.test is not None and self.test.in_effort(k, e.std)[1] > MATTERS):
+                found.append((k, e))
+        return found

@@ -1,4 +1,4 @@
-"""Output-error refinement from logs, and what it says as data and as a picture."""
+"""Output-error refinement from logs, and what it says as data."""
 
 from __future__ import annotations
 
@@ -9,7 +9,6 @@ import numpy as np
 
 from modelgen.dataset import Settings, choose, prepare, read
 from modelgen.description import Arm
-from modelgen.figures import COLOURS, figure, svg
 from modelgen.functions.parameters_file import values_of
 from modelgen.identification.output_error.refine import Refinement, refine
 from modelgen.options import RefinementOptions
@@ -65,23 +64,3 @@ def to_json(found: Refinement) -> dict[str, Any]:
         "converged": found.converged,
         "stopped": found.stopped or None,
     }
-
-
-def picture(found: Refinement) -> str:
-    """Measured and simulated positions of every joint, part after part, as SVG."""
-    n = found.plant.n
-    made, axes = figure(n, 1, (7.0, 1.8 * n + 0.4))
-    begin = 0.0
-    for k, (t, q, run) in enumerate(zip(found.t, found.measured, found.simulated, strict=True)):
-        at = begin + t - t[0]
-        begin = float(at[-1])
-        for j in range(n):
-            a = axes[j, 0]
-            a.plot(at, q[:, j], color=COLOURS[0], label="measured" if k == 0 else None)
-            a.plot(at, run[:, j], color=COLOURS[1], linewidth=0.8, label="simulated" if k == 0 else None)
-    for j, i in enumerate(found.plant.arm.coordinates):
-        unit = "m" if found.plant.arm.joints[i].type == "prismatic" else "rad"
-        axes[j, 0].set_ylabel(f"q{j + 1} [{unit}]")
-    axes[0, 0].legend(loc="upper right")
-    axes[n - 1, 0].set_xlabel("t [s], part after part")
-    return svg(made)

@@ -4,10 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-import numpy as np
-
 from modelgen.effects import CATALOGUE
-from modelgen.identification.objects import POOR, Estimate, Identification
+from modelgen.identification.objects import MATTERS, POOR, Estimate, Identification
 
 CLEARLY = 3.0  # standard deviations
 # What shows a parameter, by the letters that its standard parameter begins with; the first that fits.
@@ -22,13 +20,15 @@ _SHOWN_BY = (
 def verdict(found: Identification) -> str:
     """Which parameters are well determined, which are not, and what experiment would help."""
     lost = [e for e in found.estimates if e.std is None and not e.dropped]
-    poor = [e for e in found.estimates if e.std is not None and (e.relative or np.inf) > POOR]
+    worse = found.poor()
+    poor = [e for _, e in worse]
     dropped = [e.name for e in found.estimates if e.dropped]
-    good = [e.name for e in found.estimates if e.std is not None and (e.relative or np.inf) <= POOR]
+    good = len(found.estimates) - len(lost) - len(poor) - len(dropped)
     text = [*impossible(found.estimates), *found.doubts]
-    text += [f"{len(good)} of {len(found.estimates)} parameters are determined to {POOR:g} % or better."]
+    enough = f", or to {MATTERS:g} % of the effort" if found.test is not None else ""
+    text += [f"{good} of {len(found.estimates)} parameters are determined to {POOR:g} %{enough}, or better."]
     if poor:
-        text.append(f"Poorly determined: {', '.join(e.name for e in poor)}.")
+        text.append(f"Poorly determined: {', '.join(_doubtful(found, k) for k, _ in worse)}.")
     if lost:
         text.append(f"Not determined by these records, set to zero: {', '.join(e.name for e in lost)}.")
     if dropped:
@@ -52,6 +52,17 @@ def verdict(found: Identification) -> str:
     if advice:
         text.append(f"What would help: {'; '.join(advice)}. See modelgen excite.")
     return " ".join(text)
+
+
+def _doubtful(found: Identification, k: int) -> str:
+    """A parameter with the effort that its standard deviation stands for, where a test record says so."""
+    e, test = found.estimates[k], found.test
+    j = None if test is None else test.shown_by(k)
+    if test is None or j is None or e.std is None:
+        return e.name
+    size, share = test.in_effort(k, e.std)
+    name = found.arm.joints[found.arm.coordinates[j]].name
+    return f"{e.name} ({size:.2g} {test.unit[j]}, {share:.1f} % of the effort of {name})"
 
 
 def impossible(estimates: Sequence[Estimate]) -> list[str]:

@@ -46,7 +46,21 @@ def validate(
         share.append(100.0 * float(np.linalg.norm(e)) / max(float(np.linalg.norm(y)), 1e-300))
     t = np.concatenate([p.t for p in records])
     unit = records[0].effort_unit or ("",) * measured.shape[1]
-    return Validation(unit, np.array(rmse), np.array(share), np.array(judged), t, measured, measured - wrong)
+    sizes = _sizes(regression, gain)
+    return Validation(
+        unit, np.array(rmse), np.array(share), np.array(judged), t, measured, measured - wrong, sizes=sizes
+    )
+
+
+def _sizes(regression: Regression, gain: Sequence[Array]) -> Array:
+    """RMS of every column in the unit of the log's efforts, (n, p), over the rows that move."""
+    moved = [m[:, :, None] for m in regression.moving]
+    squares = sum(
+        ((c * g[:, :, None] * m) ** 2).sum(axis=0)
+        for c, g, m in zip(regression.columns, gain, moved, strict=True)
+    )
+    rows = sum(m.sum(axis=0) for m in moved)
+    return np.asarray(np.sqrt(squares / np.maximum(rows, 1)))
 
 
 def regression_of(

@@ -211,7 +211,7 @@ def _at_the_origin(logs: Sequence[Any]) -> str:
     """What is assumed of payloads of which the mass alone is given."""
     names = ", ".join(log if isinstance(log, str) else getattr(log, "name", "a table") for log in logs)
     return (
-        f"The payload of {names} is taken as a point at the origin of the last link's frame: where is it? "
+        f"The payload of {names} counts as a point at the origin of the last link's frame: where is it? "
         "--payload LOG=KG,X,Y,Z says so, in metres in that frame."
     )
 

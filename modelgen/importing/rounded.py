@@ -43,7 +43,7 @@ class Rounding:
             return []
         shown = ", ".join(sorted(self.taken, key=lambda token: -self.taken[token])[:4])
         return [
-            f"rounded angles are taken for multiples of 15 deg, {max(self.taken.values()):.1e} rad off at "
+            f"rounded angles are read as multiples of 15 deg, {max(self.taken.values()):.1e} rad off at "
             f"most ({shown}{', …' if len(self.taken) > 4 else ''}); --exact keeps them"
         ]
 

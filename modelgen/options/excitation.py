@@ -32,7 +32,7 @@ class ExcitationOptions:
 
     period: float = option(80.0, "Period of the trajectory.", "S", unit="s")
     harmonics: int = option(5, "Harmonics of 1/period.", "N")
-    rate: float = option(10.0, "Samples per second.", "HZ", unit="Hz")
+    rate: float = option(100.0, "Set-points per second: the controller's.", "HZ", unit="Hz")
     criterion: str = option("cond", "cond or d_optimal.", "NAME")
     coordinates: str = option("motor", "motor or joint: what the Fourier series gives.", "NAME")
     starts: int = option(8, "Random starts, in parallel.", "N")

@@ -52,7 +52,7 @@ class ModelOptions:
     )
     jacobian_link: str | None = option(None, "Link that the Jacobian belongs to. Default: the last.", "LINK")
     real: str = option(
-        "double", "Real numbers in C where the compiler is not told: float or double.", choices=REALS
+        "double", "Real numbers in C where the compiler is given no other: float or double.", choices=REALS
     )
     batch: frozenset[str] = option(
         frozenset(),

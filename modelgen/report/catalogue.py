@@ -99,7 +99,7 @@ def _section(effect: type[Definition]) -> str:
             f"- States: {', '.join(effect.states)}{'' if effect.held({}) else ', not with the defaults'}."
         )
     lines.append(f"- Confused with: {', '.join(effect.confused_with)}.")
-    lines += [f"- Told apart by: {effect.experiment}.", f"- {effect.reference}.", ""]
+    lines += [f"- Separated by: {effect.experiment}.", f"- {effect.reference}.", ""]
     return "\n".join(lines)
 
 

@@ -30,7 +30,7 @@ from modelgen.report.law_figures import judged_joint, law_charts, law_size
 from modelgen.report.named_joints import named_joints
 from modelgen.report.page import block, rendered
 from modelgen.report.ranking import rankings
-from modelgen.report.words import at, finding, joint_name, joint_names, law, sentence
+from modelgen.report.words import at, by_name, finding, joint_name, joint_names, law, sentence
 
 # By whether the test record is a free motion.
 _ERRORS = {
@@ -60,7 +60,7 @@ def report(d: Diagnosis) -> str:
         arm=d.arm.name,
         verdict=d.verdict,
         missing=missing(d),
-        reason=sentence(d.reason),
+        reason=sentence(by_name(d.arm, d.reason)),
         causes=[_cause(d, k) for k in range(len(d.causes))],
         suspects=[_as_shown(d, c, f"suspect{k}") for k, c in enumerate(d.suspects)],
         worth=sentence(worth(d)) if d.causes else "",
@@ -80,7 +80,7 @@ def report(d: Diagnosis) -> str:
         error_text=_ERRORS[free],
         simulation_text=_SIMULATED[free],
         parameters=[(name, f"{e.value:.6g}", f"{e.std:.2g}", e.unit) for name, e in d.parameters.items()],
-        hidden=d.not_identifiable,
+        hidden=[(name, by_name(d.arm, why)) for name, why in d.not_identifiable],
         experiment=described(d),
         log=d.log.lines(),
         records=[
@@ -134,17 +134,19 @@ def _as_shown(d: Diagnosis, c: NamedCause, key: str) -> dict[str, Any]:
         "gain": f"{c.cross_gain:.1f}",
         "expected": f"{c.expected_gain:.1f}",
         "share": _share(c),
-        "marks": [_mark(check) for check in c.checks],
-        "failed": [f"{x.name}: {x.text}" for x in c.checks if x.decides and x.passed is False],
+        "marks": [_mark(d, check) for check in c.checks],
+        "failed": [
+            f"{x.name} ({by_name(d.arm, x.text)})" for x in c.checks if x.decides and x.passed is False
+        ],
         "confused_with": ", ".join(definition.confused_with),
         "experiment": sentence(definition.experiment),
         "reference": definition.reference,
     }
 
 
-def _mark(c: Check) -> tuple[str, str, str, str]:
+def _mark(d: Diagnosis, c: Check) -> tuple[str, str, str, str]:
     """Sign, class, name and figures of a check."""
-    name, _, text = checked(c)
+    name, _, text = checked(d.arm, c)
     sign, kind = ("–", "unasked") if c.passed is None else ("✓", "yes") if c.passed else ("✗", "no")
     if not c.decides:
         text += "; reported, decides nothing"
@@ -164,6 +166,8 @@ def _share(c: NamedCause) -> str:
 
 def _errors(d: Diagnosis) -> list[Sequence[str]]:
     e = d.errors
+    if not d.causes:
+        return [(joint_name(d.arm, j + 1), number(e.before[j])) for j in range(len(e.before))]
     return [
         (
             joint_name(d.arm, j + 1),

@@ -5,10 +5,11 @@ from __future__ import annotations
 import numpy as np
 
 from modelgen.charts import number
+from modelgen.description import Arm
 from modelgen.diagnosis.result import Diagnosis
 from modelgen.diagnosis.validation import Check
 from modelgen.effects import CATALOGUE, Family
-from modelgen.report.words import at, finding, joint_name, joint_names, listed, sentence
+from modelgen.report.words import at, by_name, finding, joint_name, joint_names, listed, sentence
 
 _SENTENCES = {
     "nothing_missing": "Nothing is missing that these records could show.",
@@ -39,7 +40,7 @@ def headline(d: Diagnosis) -> str:
     if d.verdict == "named":
         names = listed(at(d.arm, c.effect, c.joint) for c in d.causes)
         return f"The model lacks {names}: {worth(d)}."
-    return f"{unnamed(d)} {sentence(d.reason)}"
+    return f"{unnamed(d)} {sentence(by_name(d.arm, d.reason))}"
 
 
 def worth(d: Diagnosis) -> str:
@@ -131,7 +132,7 @@ def assumptions(d: Diagnosis) -> list[str]:
         for drive in d.after.model.grouping.drives
         if drive.nominal is None and (k := d.arm.coordinates.index(drive.joint) + 1) in compliant
     ]
-    return used + unknown + ([] if d.identified is None else list(d.identified.doubts))
+    return used + unknown + ([] if d.identified is None else [by_name(d.arm, x) for x in d.identified.doubts])
 
 
 def compared(d: Diagnosis) -> list[str]:
@@ -158,13 +159,15 @@ def suspicions(d: Diagnosis) -> list[str]:
     """What has evidence and is not named, each with the check that it failed."""
     return [
         f"Suspected: {at(d.arm, c.effect, c.joint)}, evidence {c.delta_bic:.1f}. It is not named: "
-        + "; ".join(f"{name}, {text}" for name, mark, text in map(checked, c.checks) if mark == "no")
+        + "; ".join(
+            f"{name}, {text}" for name, mark, text in (checked(d.arm, k) for k in c.checks) if mark == "no"
+        )
         + "."
         for c in d.suspects
     ]
 
 
-def checked(c: Check) -> tuple[str, str, str]:
+def checked(arm: Arm, c: Check) -> tuple[str, str, str]:
     """Name, answer and figures of a check."""
     mark = "not asked" if c.passed is None else "yes" if c.passed else "no"
     if not c.decides and c.passed is False:
@@ -172,12 +175,13 @@ def checked(c: Check) -> tuple[str, str, str]:
     figures = (
         f" ({c.value:.3g}, threshold {c.threshold:.3g})" if np.isfinite([c.value, c.threshold]).all() else ""
     )
-    return c.name, mark, c.text + figures
+    return c.name, mark, by_name(arm, c.text) + figures
 
 
 def rivals(d: Diagnosis) -> list[tuple[str, str, str]]:
     """Cause, rival and why it is not named, of every cause."""
     found = []
+    further = "" if d.next_experiment is None else "; the next experiment separates them"
     for c in d.causes:
         own = at(d.arm, c.effect, c.joint)
         found += [
@@ -188,7 +192,7 @@ def rivals(d: Diagnosis) -> list[tuple[str, str, str]]:
             (
                 own,
                 at(d.arm, e, j),
-                f"delta BIC {behind:.1f} behind: nearly as good, the next experiment separates them",
+                f"delta BIC {behind:.1f} behind: nearly as good{further}",
             )
             for e, j, behind in c.ambiguous_with
         ]

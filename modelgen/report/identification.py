@@ -1,4 +1,4 @@
-"""The report of an identification: pictures, and one HTML file with them inside."""
+"""The report of an identification: one HTML file with its charts inside, and its pictures."""
 
 from __future__ import annotations
 
@@ -6,80 +6,192 @@ from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
-from jinja2 import Environment, FileSystemLoader, StrictUndefined
-from markupsafe import Markup
 from numpy.typing import NDArray
 
-from modelgen.figures import COLOURS, figure, svg
+from modelgen.charts import Chart, Curve, Interval, number, sheet
+from modelgen.functions.nominal import known_base
 from modelgen.identification import Identification, Validation
 from modelgen.identification.without_drives import Alternative
 from modelgen.numeric import Array
 from modelgen.report.arm_drawing import arm_drawing
-from modelgen.report.page import inline
-from modelgen.resources import templates_folder
+from modelgen.report.page import Block, Command, Folded, Grid, Lines, Text, block, page, pictured
+from modelgen.report.words import joint_names, listed, sentence
 
 AS_DESCRIBED = "the arm as described"
+_WIDE = 1.96  # standard deviations of a 95 % interval
+_LOOKS = ("s1", "s2", "s3")  # of models beside
 
 
-def predictions(found: Validation, others: Sequence[Alternative] = ()) -> str:
-    """Measured and predicted effort of every joint over time, and what is left, as SVG.
+def predictions(names: Sequence[str], found: Validation, others: Sequence[Alternative] = ()) -> list[Chart]:
+    """Measured and predicted effort of every joint over time, and the residual.
 
-    others: models beside it. Test records follow each other on the time axis.
+    names: of the joints. others: models beside it. Test records follow each other on the time axis.
     """
-    n = found.measured.shape[1]
     t, breaks = _elapsed(found.t)
-    made, axes = figure(n, 2, (10.0, 1.8 * n + 0.5))
-    for j in range(n):
-        left, right = axes[j]
-        left.plot(t, _cut(found.measured[:, j], breaks), color="#999999", label="measured")
-        for k, c in reversed(list(enumerate(others))):
-            style = {"color": COLOURS[1 + k], "linewidth": 0.8, "label": c.name}
-            left.plot(t, _cut(c.test.predicted[:, j], breaks), **style)
-            right.plot(t, _cut(c.test.measured[:, j] - c.test.predicted[:, j], breaks), **style)
-        style = {"color": COLOURS[0], "linewidth": 0.8, "label": AS_DESCRIBED if others else "predicted"}
-        left.plot(t, _cut(found.predicted[:, j], breaks), **style)
-        right.plot(t, _cut(found.measured[:, j] - found.predicted[:, j], breaks), **style)
-        left.set_ylabel(f"joint {j + 1} [{found.unit[j]}]")
-        right.set_ylabel("left over")
-    handles, labels = axes[0, 0].get_legend_handles_labels()
-    made.legend(handles, labels, loc="outside upper center", ncols=len(labels), fontsize=8)
-    for axis in axes[-1]:
-        axis.set_xlabel("time [s]")
-    return svg(made)
+    models = [(o.name, o.test, _LOOKS[k % len(_LOOKS)]) for k, o in enumerate(others)]
+    models.append((AS_DESCRIBED if others else "predicted", found, "before"))
+    charts = []
+    for j, name in enumerate(names):
+        unit = found.unit[j]
+        left = [Curve(t, _cut(found.measured[:, j], breaks), "measured", "measured")]
+        left += [Curve(t, _cut(m.predicted[:, j], breaks), look, word) for word, m, look in models]
+        right = [
+            Curve(t, _cut(m.measured[:, j] - m.predicted[:, j], breaks), look, word)
+            for word, m, look in models
+        ]
+        text = f"Effort of {name} over the test records, measured and predicted."
+        charts.append(Chart(name, "time [s]", f"effort [{unit}]", left, text, zoom=True))
+        text = f"Residual of {name} over the test records."
+        charts.append(Chart(f"{name}, residual", "time [s]", f"residual [{unit}]", right, text, zoom=True))
+    return charts
 
 
-def page(
+def picture(found: Validation, names: Sequence[str], others: Sequence[Alternative] = ()) -> str:
+    """SVG of `predictions`."""
+    return sheet(predictions(names, found, others), 2)
+
+
+def report(
     found: Identification,
     others: Sequence[Alternative],
     words: str,
     processing: Sequence[str],
-    spectra: str,
+    spectra: Sequence[Chart],
 ) -> str:
     """HTML that needs nothing beside it. words: the verdict."""
-    environment = Environment(
-        loader=FileSystemLoader(templates_folder()),
-        undefined=StrictUndefined,
-        autoescape=True,
-        trim_blocks=True,
-        lstrip_blocks=True,
+    arm, test = found.arm, found.test
+    names = joint_names(arm)
+    errors: list[Any] = [Text("There is no test record: nothing says how well the model predicts.")]
+    if test is not None:
+        heads = [("model", "left"), *((f"{n} [{u}]", "right") for n, u in zip(names, test.unit, strict=True))]
+        share = listed(f"{x:.1f} % at {n}" for x, n in zip(test.nrmse_percent, names, strict=True))
+        errors = [
+            Text(f"On records that it has not seen, the model misses {share} of the effort (NRMSE)."),
+            Grid("Errors on the test records", heads, [(t, *cells) for t, cells in models(test, others)]),
+            Text("RMSE, in brackets NRMSE in % of the effort.", "quiet"),
+        ]
+        if others:
+            errors.append(Text("Below it: by how much the arm as described is below or above.", "quiet"))
+    answers = [
+        ("What was found", [Text(sentence(words))]),
+        ("How well it predicts", errors),
+        ("What is uncertain", _uncertain(found)),
+        ("What to do next", _following(found)),
+    ]
+    sections: list[tuple[str, Sequence[Any]]] = [("Parameters", _parameters(found))]
+    if found.gains:
+        heads = [("joint", "left"), *((h, "right") for h in ("described", "found", "std"))]
+        rows = [
+            (names[g.joint - 1], f"{g.described:.6g}", f"{g.value:.6g}", f"{g.std:.2g}") for g in found.gains
+        ]
+        sections.append(("Torque constants", [Grid("Torque constants", heads, rows)]))
+    if test is not None:
+        title = "Measured against predicted, the whole test records"
+        sections.append((title, [block(predictions(names, test, others))]))
+    sections.append(("Processing of the logs", [Lines(processing), block(spectra)]))
+    drawing = Folded("The arm, to turn and move", [arm_drawing(arm)], screen=True)
+    sections.append(("The arm", [drawing, _method(found)]))
+    return page(f"{arm.name}: identified parameters", "Identification", answers, sections)
+
+
+def _method(found: Identification) -> Text:
+    condition = f"{found.solution.condition:.4g}"
+    return Text(
+        f"Method {found.method}; condition number of the columns at unit length {condition}.", "quiet"
     )
+
+
+def _uncertain(found: Identification) -> list[Any]:
+    """What is poorly determined, in the effort that it stands for."""
+    poor, test = found.poor(), found.test
+    lost = [e.name for e in found.estimates if e.std is None and not e.dropped]
+    parts: list[Any] = []
+    if lost:
+        parts.append(Text(f"Not determined by these records, set to zero: {', '.join(lost)}."))
+    if poor and test is not None:
+        rows = []
+        for k, e in poor:
+            j = test.shown_by(k)
+            size, share = test.in_effort(k, e.std or 0.0)
+            where = "" if j is None else joint_names(found.arm)[j]
+            unit = "" if j is None else test.unit[j]
+            value = f"{number(e.value)} ± {number(e.std or 0.0, 2)} {e.unit}"
+            rows.append((e.name, value, f"± {number(size, 2)} {unit}", f"{share:.1f} % at {where}"))
+        heads = [
+            ("parameter", "left"),
+            ("value", "right"),
+            ("in effort", "right"),
+            ("of the effort", "right"),
+        ]
+        parts += [
+            Text("What the standard deviation of these parameters moves in the effort:"),
+            Grid("Poorly determined parameters", heads, rows),
+        ]
+    return parts or [Text("No parameter is uncertain by what would matter in the effort.")]
+
+
+def _following(found: Identification) -> list[Any]:
+    name = found.arm.name
+    values = f"{name}_parameters.yaml"
+    parts = [
+        Text("Generate code with these values folded in; arms.yaml is the description:"),
+        Command(f"modelgen generate arms.yaml --arm {name} --parameters {values}"),
+    ]
+    if found.test is not None:
+        parts += [
+            Text("Where the error is larger than the noise the model lacks something; this names the cause:"),
+            Command(f"modelgen diagnose arms.yaml --arm {name} --train A --test B --out diagnosis"),
+        ]
+    if found.poor():
+        parts += [
+            Text("A motion that determines the parameters better:"),
+            Command(f"modelgen excite arms.yaml --arm {name} --out trajectory.csv"),
+        ]
+    return parts
+
+
+def _parameters(found: Identification) -> list[Any]:
+    """A picture of every unit of effort, and the table."""
+    nominal, parts = known_base(found.model), list[Any]()
     test = found.test
-    text: str = environment.get_template("report/identification.html.j2").render(
-        arm=found.arm.name,
-        arm_drawing=arm_drawing(found.arm),
-        verdict=words,
-        method=found.method,
-        condition=f"{found.solution.condition:.4g}",
-        models=models(test, others) if test is not None else [],
-        compared=bool(others),
-        joints=[f"joint {j} [{unit}]" for j, unit in enumerate(test.unit, 1)] if test is not None else [],
-        gains=[(g.joint, f"{g.described:.6g}", f"{g.value:.6g}", f"{g.std:.2g}") for g in found.gains],
-        parameters=[_parameter(e) for e in found.estimates],
-        picture=inline(predictions(test, others)) if test is not None else Markup(""),
-        spectra=inline(spectra),
-        processing=processing,
-    )
-    return "\n".join(line.rstrip() for line in text.splitlines()) + "\n"
+    if test is not None and test.sizes is not None:
+        groups: dict[str, list[Interval]] = {}
+        for k, e in enumerate(found.estimates):
+            j = test.shown_by(k)
+            if j is None or e.std is None:
+                continue
+            size, expected = float(test.sizes[j, k]), nominal.get(e.name)
+            half = _WIDE * e.std
+            ends = (e.value - half) * size, (e.value + half) * size
+            described = None if expected is None else expected * size
+            groups.setdefault(test.unit[j], []).append(Interval(e.name, e.value * size, *ends, described))
+        charts = [
+            pictured(
+                rows,
+                f"effort over the test record [{unit}]",
+                "Effort that each parameter stands for, with its interval and its nominal value.",
+                "" if len(groups) == 1 else f"parameters of joints in {unit}",
+            )
+            for unit, rows in groups.items()
+        ]
+        parts += [
+            Text(
+                "Each parameter times the RMS of what one unit of it adds to the effort, where it shows "
+                "most: a dot with its 95 % interval, and a ring where the description has it."
+            ),
+            Block(charts, kind="charts"),
+        ]
+    heads = [("parameter", "left"), *((h, "right") for h in ("value", "std", "nominal", "std %"))]
+    heads += [("unit", "left"), ("essential", "left")]
+    rows = [_parameter(e, nominal.get(e.name)) for e in found.estimates]
+    return [*parts, Grid("Parameters", heads, rows)]
+
+
+def _parameter(e: Any, nominal: float | None) -> tuple[str, ...]:
+    std = "left out" if e.dropped else "not determined" if e.std is None else f"{e.std:.2g}"
+    share = "" if e.relative is None else f"{e.relative:.1f}"
+    described = "" if nominal is None else f"{nominal:.5g}"
+    return e.name, f"{e.value:.5g}", std, described, share, e.unit, "yes" if e.essential else "no"
 
 
 def table(test: Validation) -> list[tuple[str, str]]:
@@ -95,12 +207,6 @@ def models(test: Validation, others: Sequence[Alternative]) -> list[tuple[str, l
         cells = [f"{a} ({b}) {c:+.0f} %" for (a, b), c in zip(table(other.test), change, strict=True)]
         rows.append((other.name, cells))
     return rows
-
-
-def _parameter(e: Any) -> tuple[str, ...]:
-    std = "left out" if e.dropped else "not determined" if e.std is None else f"{e.std:.2g}"
-    share = "" if e.relative is None else f"{e.relative:.1f}"
-    return e.name, f"{e.value:.5g}", std, share, e.unit, "yes" if e.essential else "no"
 
 
 def _elapsed(t: Array) -> tuple[Array, NDArray[np.intp]]:

@@ -9,9 +9,44 @@ from typing import Any
 from jinja2 import Environment, FileSystemLoader, StrictUndefined
 from markupsafe import Markup
 
-from modelgen.charts import Chart, drawn, labels
+from modelgen.charts import Chart, Interval, drawn, intervals, labels
 from modelgen.resources import templates_folder
 from modelgen.version import __version__
+
+
+@dataclass(frozen=True)
+class Text:
+    """A paragraph. look: class of its style."""
+
+    text: str
+    look: str = ""
+    kind: str = "text"
+
+
+@dataclass(frozen=True)
+class Command:
+    """A command to copy."""
+
+    text: str
+    kind: str = "command"
+
+
+@dataclass(frozen=True)
+class Lines:
+    """A list."""
+
+    lines: Sequence[str]
+    kind: str = "list"
+
+
+@dataclass(frozen=True)
+class Grid:
+    """A table. heads: each with the side that its cells stand at."""
+
+    caption: str
+    heads: Sequence[tuple[str, str]]
+    rows: Sequence[Sequence[str]]
+    kind: str = "table"
 
 
 @dataclass(frozen=True)
@@ -21,6 +56,25 @@ class Block:
     charts: Sequence[tuple[str, Markup]]
     legend: Sequence[tuple[str, str, bool]] = ()
     zooms: bool = False
+    kind: str = "charts"
+
+
+@dataclass(frozen=True)
+class Folded:
+    """What is folded away until it is asked for. screen: not on paper."""
+
+    title: str
+    parts: Sequence[Any]
+    screen: bool = False
+    kind: str = "folded"
+
+
+Parts = Sequence[tuple[str, Sequence[Any]]]  # headings, each with what stands below it
+
+
+def page(title: str, task: str, answers: Parts, sections: Parts) -> str:
+    """HTML of a result: questions with their answers, which the first screen shows, then sections."""
+    return rendered("page.html.j2", title=title, task=task, answers=answers, sections=sections)
 
 
 def block(charts: Sequence[Chart]) -> Block:
@@ -49,6 +103,11 @@ def rendered(name: str, **values: Any) -> str:
         **values,
     )
     return "\n".join(line.rstrip() for line in page.splitlines() if line.strip()) + "\n"
+
+
+def pictured(rows: Sequence[Interval], x_label: str, text: str, title: str = "") -> tuple[str, Markup]:
+    """Values with their intervals as one of the charts of a block."""
+    return title, Markup(intervals(rows, x_label, text))
 
 
 def inline(text: str) -> Markup:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
@@ -40,7 +41,7 @@ class Said(float):
 
 
 def sized(value: float, unit: str, digits: int = 2) -> str:
-    """A number with its unit; "1" is none."""
+    """A number with its unit; that of a ratio is not written."""
     return f"{number(value, digits)} {'' if unit == '1' else unit}".rstrip()
 
 
@@ -78,8 +79,20 @@ def finding(arm: Arm, effect: str, joint: int | None, parameters: Mapping[str, A
 
 
 def sentence(clause: str) -> str:
-    """With a capital letter and a full stop."""
-    return f"{clause[:1].upper()}{clause[1:]}{'' if clause.endswith(('.', '?')) else '.'}"
+    """With a capital letter, unless a name of the catalogue comes first, and a full stop."""
+    first = clause[:1] if "_" in clause.partition(" ")[0] else clause[:1].upper()
+    return f"{first}{clause[1:]}{'' if clause.endswith(('.', '?')) else '.'}"
+
+
+def by_name(arm: Arm, text: str) -> str:
+    """A text of the diagnosis with its joints' names in place of their numbers."""
+    names = joint_names(arm)
+
+    def name(found: re.Match[str]) -> str:
+        k = int(found[1])
+        return names[k - 1] if 1 <= k <= len(names) else found[0]
+
+    return re.sub(r"\bjoint (\d+)\b", name, text)
 
 
 def listed(words: Iterable[str]) -> str:

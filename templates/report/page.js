@@ -31,7 +31,8 @@ document.addEventListener("keydown", e => {
 // Enlarges the abscissae of the charts that belong together.
 function steps(low, high, about) {
   const rough = (high - low) / about, power = 10 ** Math.floor(Math.log10(rough));
-  const step = [1, 2, 5, 10].map(m => m * power).find(s => s >= rough * 0.999);
+  const count = s => Math.floor(high / s + 1e-9) - Math.ceil(low / s - 1e-9) + 1;
+  const step = [10, 5, 2, 1, 0.5].map(m => m * power).find(s => count(s) >= 3 && s <= 2 * rough) ?? 0.5 * power;
   const digits = Math.max(0, -Math.floor(Math.log10(step) + 1e-9)), found = [];
   for (let k = Math.ceil(low / step - 1e-9); k * step <= high + 1e-9 * step; k++) found.push([k * step, (k * step).toFixed(digits)]);
   return found;

@@ -78,7 +78,7 @@ def test_generate_prints_a_table_and_writes_the_arms(tmp_path: Path, checkout: P
     assert done.stderr == ""
     longest = max(SHIPPED, key=len)
     short = call("generate", "--arm", "rx90", "--arm", longest, cwd=tmp_path, checkout=checkout).stdout
-    assert max(map(len, short.splitlines())) <= 80
+    assert max(map(len, short.splitlines())) <= 60
     assert [line.split()[0] for line in short.splitlines() if " → " in line][1:] == ["rx90", longest]
 
 

@@ -58,7 +58,7 @@ def test_jitter_of_the_transport_is_told_from_jitter_of_the_sampling(true: bool,
     table = columns(stamps if true else t) | {"t": stamps}
     record = read(write_csv(tmp_path / "a.csv", table), DRIVEN)
     assert record.q[5:-5] == pytest.approx(motion(record.t)[0][5:-5], abs=3e-4)
-    assert any("samples are taken as evenly spaced" in remark for remark in record.remarks) != true
+    assert any("samples count as evenly spaced" in remark for remark in record.remarks) != true
 
 
 def test_stamps_since_an_epoch_are_written_in_full(tmp_path: Path) -> None:

@@ -239,7 +239,7 @@ def test_one_choice_serves_several_records(tmp_path: Path) -> None:
         (Settings(cutoff=120.0), "found the cut-off 120 Hz, expected one below half the rate, 100 Hz"),
         (Settings(cutoff=5.0, position_cutoff=-1.0), "found the position cut-off -1 Hz"),
         (Settings(cutoff=0.2), "too short a record: with the cut-off 0.2 Hz only"),
-        (Settings(rest_gate=(0.1, 0.1, 0.1)), "found 3 rest gates, expected one or 2"),
+        (Settings(rest_gate=(0.1, 0.1, 0.1)), "found 3 rest thresholds, expected one or 2"),
     ],
 )
 def test_settings_must_fit_the_record(settings: Settings, message: str, tmp_path: Path) -> None:
@@ -253,7 +253,7 @@ def test_the_spectra_are_drawn_alike_every_time(tmp_path: Path) -> None:
     assert picture == spectra_svg(p)
     assert "<dc:date>" not in picture
     words = [e.text for e in ElementTree.fromstring(picture).iter() if e.tag.endswith("text")]
-    assert {"hip", "knee", "18 Hz", "4 Hz", "effort [A/√Hz]"} <= set(words)
+    assert {"hip, position, cut-off 18 Hz", "knee, effort, cut-off 4 Hz", "effort [A/√Hz]"} <= set(words)
     free = read(write_csv(tmp_path / "b.csv", {"t": T, "q1": np.cos(T), "q2": np.sin(T)}), FREE)
     assert "free motion" in spectra_svg(prepare(free))
 

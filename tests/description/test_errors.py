@@ -297,8 +297,8 @@ def test_the_good_text_is_good() -> None:
         ("  arm:", "  my-arm:", "expected a name: a letter, then letters, digits and _"),
         ("  arm:", "  a__b:", "holds two _ in a row"),
         # symbols
-        ("{d3: 0.443}", "{pi: 3}", "7:15: arm.symbols.pi: 'pi' is taken by the expressions themselves"),
-        ("{d3: 0.443}", "{cos: 3}", "'cos' is taken by the expressions themselves"),
+        ("{d3: 0.443}", "{pi: 3}", "7:15: arm.symbols.pi: 'pi' belongs to the expressions themselves"),
+        ("{d3: 0.443}", "{cos: 3}", "'cos' belongs to the expressions themselves"),
         ("{d3: 0.443}", "{mm: 3}", "'mm' is a unit"),
         ("{d3: 0.443}", "{int: 3}", "'int' is a keyword"),
         ("{d3: 0.443}", "{lambda: 3}", "'lambda' is a keyword"),

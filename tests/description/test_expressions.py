@@ -90,8 +90,8 @@ def test_a_unit_is_part_of_a_name_that_ends_like_it() -> None:
         ("1j", "plain", "only numbers"),
         ("1 if d3 else 2", "plain", "only numbers"),
         ("d3.real", "plain", "only numbers"),
-        ("__import__('os')", "plain", "cannot stand in an expression"),
-        ("[1][0]", "plain", "cannot stand in an expression"),
+        ("__import__('os')", "plain", "cannot be part of an expression"),
+        ("[1][0]", "plain", "cannot be part of an expression"),
         ("7 // 2", "plain", "only numbers"),
     ],
 )

@@ -18,7 +18,7 @@ from modelgen.excitation import Excitation, excite, random_conditions
 from modelgen.functions.nominal import nominal_base
 from modelgen.options import ExcitationOptions, box
 
-PAPER = ExcitationOptions(starts=2, iterations=40, processes=1)
+PAPER = ExcitationOptions(rate=10.0, starts=2, iterations=40, processes=1)
 
 
 @cache
@@ -155,7 +155,7 @@ def test_the_command_writes_its_files_twice_the_same(tmp_path: Path) -> None:
     assert status == 0
     made = json.loads(out)
     first = {p.name: p.read_bytes() for p in (tmp_path / "new").iterdir()}
-    assert set(first) == {"a.csv", "a_set_points.csv", "a.json", "a.svg"}
+    assert set(first) == {"a.csv", "a_set_points.csv", "a.json", "a.svg", "a.html"}
     table = np.genfromtxt(tmp_path / "new" / "a.csv", delimiter=",", names=True)
     assert table.dtype.names == ("t", "q1", "dq1", "ddq1", "qm1", "dqm1")
     assert table["t"][-1] == 5.0
@@ -193,3 +193,17 @@ def test_limits_that_exclude_each_other_are_refused() -> None:
     settings = ExcitationOptions(period=5.0, velocity=2.0, starts=1, processes=1, boxes=(box("j2=2:3,:,:"),))
     with pytest.raises(InputError, match="exclude each other"):
         excite(ARMS["gravity_arm"], settings)
+
+
+def test_set_points_come_at_the_controller_s_rate(tmp_path: Path) -> None:
+    """100 Hz where nothing else is asked; the motion is the same at any."""
+    given = ("--arm", "gravity_link2", "--velocity", "2", "--starts", "1", "--period", "5")
+    tables = []
+    for more in ((), ("--rate", "10")):
+        assert run(tmp_path, *given, *more)[0] == 0
+        path = tmp_path / "new" / "a_set_points.csv"
+        tables.append(np.genfromtxt(path, delimiter=",", names=True))
+    fast, slow = tables
+    assert np.diff(fast["t"]) == pytest.approx(0.01)
+    assert np.diff(slow["t"]) == pytest.approx(0.1)
+    assert fast["qm1"][::10] == pytest.approx(slow["qm1"], abs=1e-7)

@@ -143,10 +143,9 @@ def test_the_overview_stands_alone_and_links_to_the_reports(out: Path) -> None:
     found.feed(text)
     assert found.links == ["units/one/report.html", "units/two/report.html"]
     assert all((out / link).is_file() for link in found.links)
-    assert found.tags.count("svg") == 3  # verdicts, causes, gains
-    assert found.tags.count("tr") == 1 + len(NAMES)
+    assert found.tags.count("tr") - text.count('<th scope="row">') == 3 + len(NAMES)  # of three tables
     assert "<b>nobody" not in text
-    assert "stribeck_friction at joint 2" in text
+    assert "stribeck_friction at j2" in text
 
 
 def test_killed_in_the_middle_and_taken_up_on_a_cluster(file: Path, out: Path, tmp_path: Path) -> None:

@@ -130,8 +130,8 @@ arms:
             "did you mean 'inverse_dynamics'?",
         ),
         ("tick: [gravity, gravity]", "arms.yaml:8:23: combined 'tick': found 'gravity' twice, expected"),
-        ("bias: [gravity]", "arms.yaml:8:7: 'bias' is taken"),
-        ("fast_standard: [gravity]", "arms.yaml:8:7: 'fast_standard' is taken or ends in one of _standard"),
+        ("bias: [gravity]", "arms.yaml:8:7: 'bias' is in use"),
+        ("fast_standard: [gravity]", "arms.yaml:8:7: 'fast_standard' is in use or ends in one of _standard"),
         (
             "tick: [pose]",
             "arms.yaml:8:14: combined 'tick': found 'pose', expected functions of the arm, available:",

@@ -87,7 +87,7 @@ def test_the_convention_of_a_log_is_found(hold: str | float, samples: float, arm
         assert found["hold"] == about["fits"] == hold
     else:
         assert found["hold"] == pytest.approx(hold, abs=4 * about["std_samples"] * STEP)
-    lines = [x for x in result.shown() if isinstance(x, str) and "the effort is taken as" in x]
+    lines = [x for x in result.shown() if isinstance(x, str) and "the effort counts as" in x]
     assert len(lines) == 1
     # Readings of the right instants leave noise alone: parameters lie within their deviations.
     truth = mg.build_model(arm).nominal
@@ -140,7 +140,7 @@ def test_what_the_mapping_says_is_used_and_checked(stated: str, arm: mg.Arm, tmp
     assert about["hold"] == stated
     assert about["known_from"] == "mapping"
     assert about["fits"] == "instant"
-    (line,) = [x for x in result.shown() if isinstance(x, str) and "the effort is taken as" in x]
+    (line,) = [x for x in result.shown() if isinstance(x, str) and "the effort counts as" in x]
     assert ("but the data say" in line) == (stated != "instant")
 
 

@@ -78,6 +78,7 @@ def test_friction_is_found_from_motion_alone(swings: list[str], tmp_path: Path) 
         "gravity_link2_parameters.yaml",
         "refinement.json",
         "refinement.svg",
+        "report.html",
     ]
     call = ["simulate", "--arm", "gravity_link2", "--log", swings[0], "--json"]
     call += ["--parameters", str(tmp_path / "r/gravity_link2_parameters.yaml")]

@@ -57,7 +57,7 @@ REFUSED = {
     ),
     "a mesh as inertia": (
         bodies('<joint name="a"/><geom type="mesh" mesh="part"/>'),
-        r"only simple shapes are taken",
+        r"only simple shapes are known",
     ),
     "other files": ('<include file="x.xml"/>', r"<include> is not read"),
     "no joint": (bodies(MASS), r"no joint is left that moves"),

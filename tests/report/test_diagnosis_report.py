@@ -13,11 +13,15 @@ from browser_support import SCHEMES, WIDTHS, letters, opened, violations, wider
 from diagnosis_support import ARM, three
 
 from modelgen.description import DirectDrive
+from modelgen.diagnosis.extended import Estimate
 from modelgen.diagnosis.pipeline import diagnose
 from modelgen.diagnosis.result import Diagnosis
+from modelgen.effects import CATALOGUE
 from modelgen.report.diagnosis import report
 from modelgen.report.diagnosis_figures import binned, efforts, residuals
+from modelgen.report.diagnosis_sentences import remains, worth
 from modelgen.report.law_figures import judged_joint, law_charts
+from modelgen.report.words import by_name, finding, sentence
 
 WORDS = ("stribeck_friction", "at j2", "over all joints", "What these records cannot show")
 ASKED = ("What is missing", "How sure", "What it is worth", "What to do next")
@@ -100,7 +104,7 @@ def test_every_check_shows_its_figure_to_the_pointer_and_to_the_keyboard(
             assert not tip.is_visible()
             marks.nth(k).locator("button").focus()
             assert tip.is_visible()
-            assert check.text in tip.inner_text()
+            assert by_name(found.arm, check.text) in tip.inner_text()
             page.evaluate("document.activeElement.blur()")
             marks.nth(k).hover()
             assert tip.is_visible()
@@ -178,3 +182,71 @@ def test_means_over_a_short_record_are_not_few() -> None:
     np.testing.assert_allclose(means, 2.0 * places)
     long = np.linspace(0.0, 1.0, 10_000)
     assert len(binned(long, long)[0]) == 24
+
+
+def other(found: Diagnosis, verdict: str) -> Diagnosis:
+    """As if the records had given another verdict."""
+    (cause,) = found.causes
+    failed = tuple(replace(c, passed=False) if c.name == "form" else c for c in cause.checks)
+    suspects = (replace(cause, checks=failed),) if verdict == "suspected" else ()
+    residuals = (found.residuals[0], found.residuals[0])
+    reason = "something deterministic remains at joint 2 that no effect of the catalogue explains"
+    bare = replace(found, verdict=verdict, causes=(), laws=(), residuals=residuals, reason=reason)
+    fit = found.lack_of_fit
+    assert fit is not None
+    worst = replace(fit.worst, statistic=9.0, joint=1)
+    left = replace(fit, worst=worst, by_joint=np.array([0.9, 9.0]))
+    fits = {"outside_catalogue": left, "cannot_tell": None}
+    return replace(bare, suspects=suspects, lack_of_fit=fits.get(verdict, fit))
+
+
+@pytest.mark.parametrize("verdict", ["suspected", "nothing_missing", "outside_catalogue", "cannot_tell"])
+def test_a_page_without_a_cause_answers_the_same_questions(
+    verdict: str, found: Diagnosis, tmp_path: Path
+) -> None:
+    path = tmp_path / "report.html"
+    path.write_text(report(other(found, verdict)), encoding="utf-8")
+    with opened(path, 400, "dark") as page:
+        assert page.locator("dl.answer dt").all_inner_texts() == list(ASKED)
+        page.evaluate("document.querySelectorAll('details:not(.screen)').forEach(d => d.open = true)")
+        assert violations(page) == []
+        assert wider(page) == 0
+        said = page.locator("dl.answer").inner_text()
+    assert "less %" not in said
+    assert "joint 2" not in said  # by its name
+    assert ("form" in said) == (verdict == "suspected")
+
+
+def test_the_size_of_what_repeats_is_said(found: Diagnosis) -> None:
+    """Of three periods an F of 9 leaves 8/3 of the noise's mean square: 8/11 of all."""
+    d = other(found, "outside_catalogue")
+    said = remains(d)
+    moving = d.test.moving[:, 1]
+    rms = np.sqrt(np.mean(d.residuals[0][moving, 1] ** 2))
+    (size, unit) = re.findall(r"About ([\d.]+) of [\d.]+ (\S+) at j2 repeats", said)[0]
+    assert float(size) == pytest.approx(rms * np.sqrt(8 / 11), rel=0.05)
+    assert unit == "A"
+
+
+def test_named_never_stands_beside_no_less_error(found: Diagnosis) -> None:
+    none = np.zeros_like(found.errors.gain)
+    same = replace(found.errors, after=found.errors.before, gain=none)
+    assert "predicted no better" in worth(replace(found, errors=same))
+    assert "0.0 %" not in worth(replace(found, errors=same)).partition("(")[0]
+    lost = replace(
+        found.errors, gain=np.array([-3.0, 0.0]), after=found.errors.before * np.array([1.03, 1.0])
+    )
+    assert "more error over all joints" in worth(replace(found, errors=lost))
+    assert "3.0 % more at j1" in worth(replace(found, errors=lost))
+
+
+@pytest.mark.parametrize("effect", CATALOGUE)
+def test_every_effect_says_in_words_that_it_is_there(effect: str) -> None:
+    definition = CATALOGUE[effect]
+    values = {p.name: Estimate(0.05, 0.01, p.unit.format(f="N m", x="rad")) for p in definition.accepted()}
+    joint = None if definition.scope == "arm" else 1
+    said = sentence(finding(ARM, effect, joint, values))
+    assert said[0].isupper()
+    assert "{" not in said
+    assert "_" not in effect or effect not in said
+    assert joint is None or "j1" in said

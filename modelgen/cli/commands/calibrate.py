@@ -50,4 +50,6 @@ def calibrate(
     result.write(out)
     print_result(result, as_json=as_json)
     if not as_json:
-        typer.echo(f"wrote {out / 'calibration.json'}, {found.name}_calibrated.yaml, calibration.svg")
+        typer.echo(
+            f"wrote {out / 'calibration.json'}, {found.name}_calibrated.yaml, calibration.svg, report.html"
+        )

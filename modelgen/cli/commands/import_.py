@@ -24,9 +24,7 @@ Root = Annotated[
 ]
 Tip = Annotated[
     str | None,
-    typer.Option(
-        metavar="LINK", help="Link that the arm ends with. Default: all are taken.", show_default=False
-    ),
+    typer.Option(metavar="LINK", help="Link that the arm ends with. Default: all.", show_default=False),
 ]
 Lock = Annotated[
     list[str] | None,

@@ -110,7 +110,7 @@ class Document(Model):
         default=0, description="Lines passed over at the beginning of the file."
     )
     names: dict[str, str] = Field(
-        default={}, description="Short names for columns whose own cannot stand in a formula."
+        default={}, description="Short names for columns whose own cannot be part of a formula."
     )
     joints: Annotated[list[JointModel], Field(min_length=1)] = Field(
         description="The joints, in the order of the arm's coordinates."

@@ -42,7 +42,7 @@ class EffortInstant:
     def line(self) -> str:
         """One line on it."""
         said = _WORDS[self.hold] if isinstance(self.hold, str) else f"{self.hold * 1e3:.4g} ms after it"
-        text = f"the effort is taken as {'read ' if not isinstance(self.hold, str) else ''}{said}"
+        text = f"the effort counts as {'read ' if not isinstance(self.hold, str) else ''}{said}"
         measured = "" if self.delay is None else f"{self.delay:.2f} ± {self.std:.2g} samples after it"
         source = {"mapping": ", as the mapping says", "readings": ": it is new where the position is"}
         text += f" (hold: {self.hold if isinstance(self.hold, str) else f'{self.hold:.4g}'})"

@@ -132,7 +132,7 @@ def choose(records: Record | Sequence[Record], settings: Settings | Chosen | Non
     elif isinstance(gates, float | int):
         gates = (float(gates),) * first.n
     if len(gates) != first.n:
-        raise InputError(f"{first.name}: found {len(gates)} rest gates, expected one or {first.n}")
+        raise InputError(f"{first.name}: found {len(gates)} rest thresholds, expected one or {first.n}")
     time = settings.rest_time
     if time is None:
         time = max(limits.rest_cutoff_periods / cutoff, limits.min_rest_time) if cutoff else 3 * first.step

@@ -2,17 +2,14 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
 from scipy import signal
 
+from modelgen.charts import Chart, Curve, sheet
 from modelgen.dataset.processing.filters import low_pass
 from modelgen.dataset.processing.prepare import Prepared
-from modelgen.figures import COLOURS, figure, svg
 from modelgen.numeric import Array
 
-RAW, FILTERED = "#9aa5b1", COLOURS[0]
 POINTS = 300  # of a curve, at most: the picture stays small
 
 
@@ -49,70 +46,63 @@ def _ordinal(n: int) -> str:
     return f"{n}{'th' if 10 <= n % 100 <= 20 else ends.get(n % 10, 'th')}"
 
 
-def spectra_svg(prepared: Prepared) -> str:
-    """The picture as SVG text, the same in every run.
-
-    Above: amplitude densities of the positions, raw and filtered; below: of the efforts in the log's units;
-    a column per joint.
-    """
-    made, grid = figure(2, prepared.n, (2.6 * max(prepared.n, 2), 4.6))
+def spectra(prepared: Prepared) -> list[Chart]:
+    """Amplitude densities of positions and efforts of every joint, raw and filtered, with the cut-offs."""
+    charts = []
     for k in range(prepared.n):
-        _position(grid[0][k], prepared, k)
-        _effort(grid[1][k], prepared, k)
-        grid[1][k].set_xlabel("frequency [Hz]")
-    return svg(made)
+        charts += [_position(prepared, k), _effort(prepared, k)]
+    return charts
 
 
-def _position(axes: Any, prepared: Prepared, k: int) -> None:
+def spectra_svg(prepared: Prepared) -> str:
+    """The spectra as SVG text, the same in every run: a row for each joint."""
+    return sheet(spectra(prepared), 2)
+
+
+def _position(prepared: Prepared, k: int) -> Chart:
     record, s = prepared.record, prepared.settings
-    raw = record.motor if record.motor_side and record.motor_side[k] else record.q
-    rate = 1.0 / record.step
-    column = raw[:, k : k + 1]
+    at_motor = bool(record.motor_side and record.motor_side[k])
+    column = (record.motor if at_motor else record.q)[:, k : k + 1]
+    rate, unit = 1.0 / record.step, _unit(prepared, k, at_motor=at_motor)
     filtered = low_pass(column, s.position_cutoff, rate, s.position_order) if s.position_cutoff else column
-    _curves(axes, column[:, 0], filtered[:, 0], rate)
-    _cutoff(axes, s.position_cutoff)
-    joint = _joint(prepared, k)
-    axes.set_title(joint)
-    if k == 0:
-        axes.set_ylabel("position, per √Hz")
+    name = _joint(prepared, k)
+    return _chart(f"{name}, position", f"position [{unit}/√Hz]", column, filtered, rate, s.position_cutoff)
 
 
-def _effort(axes: Any, prepared: Prepared, k: int) -> None:
+def _effort(prepared: Prepared, k: int) -> Chart:
+    name = _joint(prepared, k)
     if prepared.input is None or prepared.gain is None:
-        axes.text(0.5, 0.5, "free motion", ha="center", transform=axes.transAxes)
-        return
+        return Chart(f"{name}: free motion", "frequency [Hz]", "no effort [-]", [])
     s, rate = prepared.settings, 1.0 / prepared.record.step
     column = (prepared.input * prepared.gain)[:, k : k + 1]
     filtered = low_pass(column, s.cutoff, rate, s.order) if s.cutoff else column
-    _curves(axes, column[:, 0], filtered[:, 0], rate)
-    _cutoff(axes, s.cutoff)
-    axes.set_ylabel(f"effort [{prepared.effort_unit[k]}/√Hz]")
+    label = f"effort [{prepared.effort_unit[k]}/√Hz]"
+    return _chart(f"{name}, effort", label, column, filtered, rate, s.cutoff)
 
 
-def _curves(axes: Any, raw: Array, filtered: Array, rate: float) -> None:
+def _chart(title: str, label: str, raw: Array, filtered: Array, rate: float, cutoff: float) -> Chart:
     window = min(len(raw), max(256, round(8 * rate)))
-    top = 1.0
-    for values, colour, name in ((raw, RAW, "raw"), (filtered, FILTERED, "filtered")):
+    curves, top = [], 1.0
+    for values, role, name in ((raw[:, 0], "measured", "raw"), (filtered[:, 0], "before", "filtered")):
         f, power = signal.welch(values, fs=rate, nperseg=window, detrend="linear")
         density = np.sqrt(np.maximum(power[1:], 1e-300))
         # Evenly spaced on the logarithmic axis, so that the picture stays small.
         chosen = np.unique(np.geomspace(1, len(density), POINTS).round().astype(int)) - 1
-        axes.loglog(f[1:][chosen], density[chosen], color=colour, lw=0.8, label=name)
+        curves.append(Curve(f[1:][chosen], density[chosen], role, name))
         top = float(density.max()) if name == "raw" else top
-    axes.set_ylim(1e-7 * top, 3 * top)
-    axes.legend(loc="lower left")
-
-
-def _cutoff(axes: Any, cutoff: float) -> None:
+    low, high = 1e-7 * top, 3.0 * top
     if cutoff:
-        axes.axvline(cutoff, color="black", lw=0.8, ls="--")
-        axes.annotate(
-            f"{cutoff:.3g} Hz",
-            (cutoff, 0.97),
-            xycoords=("data", "axes fraction"),
-            xytext=(3, -6),
-            textcoords="offset points",
-        )
+        curves.append(Curve(np.array([cutoff, cutoff]), np.array([low, high]), "law", "cut-off"))
+        title += f", cut-off {cutoff:.3g} Hz"
+    text = f"Spectrum of {title}, raw and filtered."
+    return Chart(title, "frequency [Hz]", label, curves, text, y_range=(low, high), logarithmic=True)
+
+
+def _unit(prepared: Prepared, k: int, *, at_motor: bool) -> str:
+    arm = prepared.record.arm
+    if at_motor or arm is None:
+        return "motor unit" if at_motor else "rad or m"
+    return "m" if arm.joints[arm.coordinates[k]].type == "prismatic" else "rad"
 
 
 def _joint(prepared: Prepared, k: int) -> str:

@@ -33,7 +33,7 @@ def true_stamps(t: Array, positions: Array, limits: DatasetThresholds) -> tuple[
         said = f"stamps vary by up to {apart / period:.2g} periods and the positions do not follow them"
     else:
         return t, None
-    return even, f"{said}: samples are taken as evenly spaced, at {1 / period:.6g} Hz"
+    return even, f"{said}: samples count as evenly spaced, at {1 / period:.6g} Hz"
 
 
 def roughness(t: Array, positions: Array) -> float:

@@ -41,7 +41,7 @@ def without_lone(
         at = ", ".join(f"{column[i]:.9g} in sample {i + 1}" for i in places[:NAMED])
         more = f" and {len(places) - NAMED} more" if len(places) > NAMED else ""
         remarks.append(
-            f"{file}: {name} has a reading that those beside it rule out: {at}{more}; taken as they say"
+            f"{file}: {name} has a reading that those beside it rule out: {at}{more}; it is read as they say"
         )
     return result, remarks
 

@@ -66,7 +66,7 @@ def read(
         # Position and effort that are new together were read together, which no controller's output is.
         source = replace(source, hold="instant")
         found.append(
-            "the effort is new where the position is: taken as read at the same instant (hold: instant)"
+            "the effort is new where the position is: it counts as read at the same instant (hold: instant)"
         )
     record, logged = record_of(source, arm, table, axis, axis.times())
     if together:

@@ -173,7 +173,7 @@ def _undominated(by: Dominance) -> Check:
 
 def _form(by: FreeForm | None) -> Check:
     if by is None:
-        text = "no function of position and speed could stand in its place"
+        text = "no function of position and speed does as well"
         return Check("form", True, True, float("nan"), float("nan"), text)
     text = "delta BIC by which a free function of the joint's position and speed is ahead"
     return Check("form", not by.better, True, by.ahead, by.most, text)

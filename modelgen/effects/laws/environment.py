@@ -84,7 +84,7 @@ class AddedMass(Strips):
     name = "added_mass"
     seen_over = "acceleration"
     text = "fluid that slender links accelerate with them, across their line"
-    finding = "{place} accelerates fluid around it"
+    finding = "fluid is accelerated along with {place}"
     reference = "Kirchhoff 1870; Fossen 2011"
     linear = (Parameter("per_length", "kg/m", "mass of the fluid by length of the link", "CM"),)
     confused_with = ("payload_change", "fluid_drag")

@@ -31,7 +31,7 @@ def geom_body(geom: Element, compiler: Compiler, frame: Array) -> Body | None:
         return None
     if kind not in _SIZES or "mesh" in given or given.get("shellinertia") == "true":
         raise geom.error(
-            f"a geom of type '{kind}' gives its body its inertia: only simple shapes are taken; "
+            f"a geom of type '{kind}' gives its body its inertia: only simple shapes are known; "
             "give the body an <inertial>"
         )
     size, place = _placed(geom, kind, compiler)

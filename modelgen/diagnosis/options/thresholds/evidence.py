@@ -37,7 +37,10 @@ class EvidenceThresholds(Group):
         "about two seconds of the usual band; tapered (Newey and West 1987)",
     )
     min_noise_rows: int = entry(
-        300, "rows", "Noise is told from what repeats where at least so many rows show what differs.", JUDGED
+        300,
+        "rows",
+        "Noise is separated from what repeats where at least so many rows show what differs.",
+        JUDGED,
     )
     unknown_noise_price: float = entry(
         1.5,

@@ -1,0 +1,93 @@
+"""The report of a calibration: the lever as described and as found, and the angles that it explains."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from modelgen.calibration import Calibration
+from modelgen.charts import Chart, Curve, number, sheet
+from modelgen.description import Arm
+from modelgen.report.page import Command, Grid, Parts, Text, block, page
+from modelgen.report.words import joint_name
+
+_BEFORE, _AFTER = "as described", "calibrated"
+
+
+def charts(arm: Arm, c: Calibration) -> list[Chart]:
+    """Measured angle and both levers over the motor coordinate, and what each misses."""
+    name = joint_name(arm, c.joint)
+    order = np.argsort(c.motor, kind="stable")
+    x, measured = c.motor[order], np.degrees(c.measured[order])
+    before, after = (np.degrees(lever.angle(x)) for lever in (c.before, c.after))
+    label = f"motor of {name} [motor unit]"
+    return [
+        Chart(
+            f"{name}: angle",
+            label,
+            "angle [deg]",
+            [
+                Curve(x, measured, "measured", "measured", True),
+                Curve(x, before, "before", _BEFORE),
+                Curve(x, after, "after", _AFTER),
+            ],
+            f"Angle of {name} over its motor coordinate, measured and of both levers.",
+        ),
+        Chart(
+            f"{name}: error",
+            label,
+            "error [deg]",
+            [
+                Curve(x, measured - before, "before", _BEFORE),
+                Curve(x, measured - after, "after", _AFTER),
+            ],
+            f"Measured angle of {name} less that of either lever.",
+        ),
+    ]
+
+
+def picture(arm: Arm, c: Calibration) -> str:
+    """SVG of `charts`."""
+    return sheet(charts(arm, c), 2)
+
+
+def report(arm: Arm, c: Calibration) -> str:
+    """HTML that needs nothing beside it."""
+    name = joint_name(arm, c.joint)
+    before, after = (number(float(np.degrees(x))) for x in (c.rms_before, c.rms_after))
+    said = f"The lever of {name} explains the angle to {after} deg instead of {before} deg (RMSE): "
+    said += f"{c.improvement_percent:.0f} % less, over {len(c.motor)} samples."
+    branch = []
+    if c.after.rev != c.before.rev:
+        left = number(float(np.degrees(c.candidates[c.before.rev])))
+        branch = [Text(f"rev is {c.after.rev:+d}: the other branch leaves {left} deg.")]
+    weak = [Text(f"Not determined: {words}.") for words in c.weak]
+    calibrated = f"{arm.name}_calibrated.yaml"
+    heads = [("value", "left"), *((h, "right") for h in ("described", "calibrated", "std", "moved by std"))]
+    heads.append(("unit", "left"))
+    rows = [
+        (
+            e.name,
+            f"{e.before:.6g}",
+            f"{e.value:.6g}",
+            f"{e.std:.2g}",
+            f"{(e.value - e.before) / e.std:+.1f}" if e.std > 0 else "",
+            e.unit,
+        )
+        for e in c.estimates
+    ]
+    answers: Parts = [
+        ("What was found", [Text(said), *branch]),
+        ("Described and calibrated", [Grid("Lever as described and calibrated", heads, rows)]),
+        ("What is uncertain", weak or [Text("The angles and the measured lengths determine every value.")]),
+        (
+            "What to do next",
+            [
+                Text("Use the description with this lever, in the folder of this report:"),
+                Command(
+                    f"modelgen identify {calibrated} --arm {arm.name} --train A --test B --out identified"
+                ),
+            ],
+        ),
+    ]
+    sections: Parts = [("Measured angles and both levers", [block(charts(arm, c))])]
+    return page(f"{arm.name}: lever of {name}", "Calibration", answers, sections)

@@ -1,0 +1,106 @@
+"""The report of an excitation: the motion on both sides of the drives, how well it excites, limits used."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from modelgen.charts import Chart, Curve, number, sheet
+from modelgen.dataset.drives import drives_of
+from modelgen.excitation import Excitation
+from modelgen.report.page import Command, Grid, Lines, Parts, Text, block, page
+from modelgen.report.words import joint_names
+
+_GOOD, _FAIR = (
+    30.0,
+    100.0,
+)  # condition numbers with columns of unit norm (Schroeer 1993; Gautier and Khalil 1992)
+_SIDES = (
+    ("q", "position", "", "joint"),
+    ("dq", "speed", "/s", "joint"),
+    ("qm", "motor", "", "motor"),
+    ("dqm", "motor speed", "/s", "motor"),
+)
+
+
+def charts(e: Excitation) -> list[Chart]:
+    """Position and speed on both sides of every drive over one period."""
+    drives, found = drives_of(e.arm), []
+    for k, name in enumerate(joint_names(e.arm)):
+        angle = e.arm.joints[e.arm.coordinates[k]].type != "prismatic"
+        own = "deg" if angle else "m"
+        units = {"joint": own, "motor": drives[k].unit if drives[k].driven else own}
+        for signal, word, per, side in _SIDES:
+            unit = {"unit": "motor unit"}.get(units[side], units[side])
+            y = e.signals[signal][:, k]
+            y = np.degrees(y) if unit == "deg" else y
+            found.append(
+                Chart(
+                    f"{name}, {word}",
+                    "time [s]",
+                    f"{word} [{unit}{per}]",
+                    [Curve(e.t, y, "before" if side == "joint" else "after", f"{side} side")],
+                    f"{word.capitalize()} of {name} over one period.",
+                    zoom=True,
+                )
+            )
+    return found
+
+
+def picture(e: Excitation) -> str:
+    """SVG of `charts`."""
+    return sheet(charts(e), len(_SIDES))
+
+
+def report(e: Excitation, stem: str) -> str:
+    """HTML that needs nothing beside it. stem: what the names of the files beside it begin with."""
+    s, name = e.problem.settings, e.arm.name
+    grade = "well" if e.condition <= _GOOD else "fairly" if e.condition <= _FAIR else "badly"
+    said = (
+        f"The motion separates the {len(e.problem.names)} base parameters {grade}: condition number "
+        f"{number(e.condition)} with columns of unit norm ({_GOOD:g} is good, above {_FAIR:g} is poor)."
+    )
+    reached = [x for x in e.values if np.isfinite(x)]
+    if len(reached) > 1:
+        said += f" {len(reached)} starts ended between {number(min(reached))} and {number(max(reached))}."
+    remarks = [*e.arm.notes, *e.problem.remarks]
+    tight = sorted(e.usage.items(), key=lambda item: -item[1])
+    rows = [(limit, f"{100 * share:.1f}") for limit, share in tight]
+    answers: Parts = [
+        ("What was found", [Text(said)]),
+        (
+            "What it asks of the arm",
+            [
+                Text(
+                    f"One period of {s.period:g} s, {s.rate:g} set-points a second, {s.harmonics} harmonics."
+                ),
+                *(
+                    [Text(f"Tightest limit: {tight[0][0]}, {100 * tight[0][1]:.0f} % of it used.")]
+                    if tight
+                    else []
+                ),
+                *([Lines(remarks)] if remarks else []),
+            ],
+        ),
+        (
+            "What to do next",
+            [
+                Text(
+                    f"Give {stem}_set_points.csv to the position controller, two periods or more in a row, "
+                    "and record positions and efforts; then once more, a motion of another --seed, for the "
+                    "test record. The parameters:"
+                ),
+                Command(f"modelgen identify arms.yaml --arm {name} --train A --test B --out identified"),
+            ],
+        ),
+    ]
+    sections: Parts = [
+        ("The motion", [block(charts(e))]),
+        (
+            "Limits",
+            [
+                Grid("Limits", [("limit", "left"), ("used %", "right")], rows),
+                Text("q, dq, ddq: of the joint; qm, dqm, ddqm: of the motor.", "quiet"),
+            ],
+        ),
+    ]
+    return page(f"{name}: excitation trajectory", "Excitation", answers, sections)

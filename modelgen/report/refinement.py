@@ -1,0 +1,133 @@
+"""The report of a refinement: motion before and after, parameters against where they started."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from modelgen.charts import Chart, Curve, number, sheet
+from modelgen.identification.output_error.refine import Refinement
+from modelgen.numeric import Array
+from modelgen.report.page import Command, Grid, Parts, Text, block, page
+from modelgen.report.words import joint_names, listed
+
+_FAR = 2.0  # standard deviations
+
+
+def motion(found: Refinement) -> list[Chart]:
+    """Measured and simulated positions of every joint, part after part, and their difference."""
+    arm = found.plant.arm
+    t, measured, simulated = _joined(found)
+    charts = []
+    for j, name in enumerate(joint_names(arm)):
+        unit = "m" if arm.joints[arm.coordinates[j]].type == "prismatic" else "rad"
+        curves = [
+            Curve(t, measured[:, j], "measured", "measured"),
+            Curve(t, simulated[:, j], "after", "simulated, refined"),
+        ]
+        text = f"Position of {name}, measured and simulated."
+        charts.append(Chart(name, "time [s]", f"position [{unit}]", curves, text, zoom=True))
+        error = [Curve(t, simulated[:, j] - measured[:, j], "after", "simulated, refined")]
+        text = f"Simulated less measured position of {name}."
+        charts.append(Chart(f"{name}, error", "time [s]", f"error [{unit}]", error, text, zoom=True))
+    return charts
+
+
+def picture(found: Refinement) -> str:
+    """SVG of `motion`."""
+    return sheet(motion(found), 2)
+
+
+def report(found: Refinement) -> str:
+    """HTML that needs nothing beside it."""
+    arm = found.plant.arm
+    name, names = arm.name, joint_names(arm)
+    units = ["m" if arm.joints[i].type == "prismatic" else "rad" for i in arm.coordinates]
+    rows = [
+        (
+            joint,
+            f"{found.before.f_gof[k]:.2f}",
+            f"{found.after.f_gof[k]:.2f}",
+            f"{number(found.before.rmse[k])} {units[k]}",
+            f"{number(found.after.rmse[k])} {units[k]}",
+        )
+        for k, joint in enumerate(names)
+    ]
+    heads = [("joint", "left"), ("F_gof % before", "right"), ("after", "right")]
+    heads += [("RMSE before", "right"), ("after", "right")]
+    free = [x for x in found.parameters if x.std is not None]
+    tuned = f"{len(free)} of {len(found.parameters)}"
+    steps = f"after {found.rounds} steps"
+    ended = f"It converged {steps}" if found.converged else f"It did not converge {steps}: {found.stopped}"
+    answers: Parts = [
+        (
+            "What was found",
+            [Text(f"{tuned} parameters were tuned until the simulated motion is the measured one. {ended}.")],
+        ),
+        (
+            "How well it moves",
+            [
+                Grid("Simulated motion", heads, rows),
+                Text(
+                    "Goodness of fit 100 (1 - |y - simulated| / |y - mean y|), and RMSE of the positions, of "
+                    "whole parts simulated from their beginning.",
+                    "quiet",
+                ),
+            ],
+        ),
+        ("What moved", [Text(_moved(free))]),
+        (
+            "What to do next",
+            [
+                Text("Generate code with these values folded in; arms.yaml is the description:"),
+                Command(f"modelgen generate arms.yaml --arm {name} --parameters {name}_parameters.yaml"),
+                Text("Where the motion still differs by more than its noise, this names the cause:"),
+                Command(f"modelgen diagnose arms.yaml --arm {name} --train A --test B --out diagnosis"),
+            ],
+        ),
+    ]
+    table = [
+        (
+            x.name,
+            f"{x.start:.5g}",
+            f"{x.value:.5g}",
+            "held" if x.std is None else f"{x.std:.2g}",
+            "" if not x.std else f"{(x.value - x.start) / x.std:+.1f}",
+            x.unit,
+        )
+        for x in found.parameters
+    ]
+    columns = [("parameter", "left"), ("start", "right"), ("refined", "right"), ("std", "right")]
+    columns += [("moved by std", "right"), ("unit", "left")]
+    sections: Parts = [
+        ("Measured against simulated motion", [block(motion(found))]),
+        ("Parameters", [Grid("Parameters", columns, table)]),
+    ]
+    return page(f"{name}: refined parameters", "Refinement", answers, sections)
+
+
+def _moved(free: list[Any]) -> str:
+    """Which parameters left their start by more than their uncertainty."""
+    far = sorted(
+        (x for x in free if x.std and abs(x.value - x.start) > _FAR * x.std),
+        key=lambda x: -abs(x.value - x.start) / x.std,
+    )
+    if not far:
+        return f"No parameter left its start by more than {_FAR:g} standard deviations."
+    said = listed(f"{x.name} {number(x.start)} → {number(x.value)} {x.unit}".rstrip() for x in far[:6])
+    more = f", and {len(far) - 6} more" if len(far) > 6 else ""
+    return f"By more than {_FAR:g} standard deviations: {said}{more}."
+
+
+def _joined(found: Refinement) -> tuple[Array, Array, Array]:
+    """Times, measured and simulated positions, part after part with a gap between two."""
+    times, measured, simulated, begin = [], [], [], 0.0
+    for t, q, run in zip(found.t, found.measured, found.simulated, strict=True):
+        at = begin + t - t[0]
+        begin = float(at[-1])
+        gap = np.full((1, q.shape[1]), np.nan)
+        times += [at, np.array([begin])]
+        measured += [q, gap]
+        simulated += [run, gap]
+    return np.concatenate(times), np.concatenate(measured), np.concatenate(simulated)

@@ -1,0 +1,162 @@
+"""The pages of identify, refine, calibrate, excite and fleet, in a browser."""
+
+import re
+from collections.abc import Mapping
+from pathlib import Path
+
+import numpy as np
+import pytest
+from browser_support import SCHEMES, WIDTHS, letters, opened, violations, wider
+from diagnosis_support import ARM, three
+
+import modelgen as mg
+from modelgen.calibration.lever import lever_of
+from modelgen.fleet.overview import overview
+
+QUESTIONS = {
+    "identify": "What was found, How well it predicts, What is uncertain, What to do next",
+    "refine": "What was found, How well it moves, What moved, What to do next",
+    "calibrate": "What was found, Described and calibrated, What is uncertain, What to do next",
+    "excite": "What was found, What it asks of the arm, What to do next",
+    "fleet": "What was found, What is missing, What it is worth, What to look at next",
+}
+ROW = {
+    "arm": "digger",
+    "reason": "a cause passed every check",
+    "causes": ["load_dependent_friction"],
+    "joints": [2],
+    "joint_names": ["stick"],
+    "ambiguous_with": [["encoder_offset at joint 2"]],
+    "delta_bic": [289.3],
+    "overall_gain_percent": 12.6,
+    "lack_of_fit": 0.95,
+    "lack_of_fit_threshold": 1.25,
+    "seconds": 14.0,
+    "cpu_seconds": 13.0,
+}
+
+
+def identified() -> str:
+    train, _, test = three(None, 1, 0.0)
+    return mg.identify(ARM, train=train, test=test).files()["report.html"]
+
+
+def refined() -> str:
+    arm = mg.load_arms()["gravity_link2"]
+    swing = mg.simulate(arm, q0="20 deg", duration=2.0, rate=200.0)
+    noise = 1e-3 * np.random.default_rng(0).standard_normal(len(swing.t))
+    return mg.refine(arm, {"t": swing.t, "q1": swing.q[:, 0] + noise}).files()["report.html"]
+
+
+def calibrated() -> str:
+    arm = mg.load_arms()["ariane4"]
+    motor = np.linspace(0.0, 20_000.0, 300)
+    angle = lever_of(arm, 3).angle(motor) + 0.02 + 0.01 * np.random.default_rng(1).standard_normal(300)
+    log = {"t": 0.05 * np.arange(300), "qm3": motor, "q3": angle}
+    return mg.calibrate(arm, 3, log).files()["report.html"]
+
+
+def excited() -> str:
+    arm = mg.load_arms()["ariane4"]
+    return mg.excite(arm, period=20.0, starts=1, iterations=5, processes=1).files()["trajectory.html"]
+
+
+def fleet() -> str:
+    named = [
+        {"unit": f"u{k}", "verdict": "named", "report": f"units/u{k}/report.html"} | ROW for k in range(3)
+    ]
+    return overview([*named, {"unit": "broken", "arm": "digger", "error": "b.csv:101: found 'word'"}])
+
+
+@pytest.fixture(scope="module")
+def pages(tmp_path_factory: pytest.TempPathFactory) -> Mapping[str, Path]:
+    folder, found = tmp_path_factory.mktemp("pages"), {}
+    made = {
+        "identify": identified,
+        "refine": refined,
+        "calibrate": calibrated,
+        "excite": excited,
+        "fleet": fleet,
+    }
+    for name, page in made.items():
+        found[name] = folder / f"{name}.html"
+        found[name].write_text(page(), encoding="utf-8")
+    return found
+
+
+@pytest.mark.parametrize("name", QUESTIONS)
+def test_a_page_says_first_what_was_found_and_what_to_do_next(name: str, pages: Mapping[str, Path]) -> None:
+    assert pages[name].stat().st_size < 1_500_000
+    with opened(pages[name]) as page:
+        assert page.locator("dl.answer dt").all_inner_texts() == QUESTIONS[name].split(", ")
+        assert page.locator("h1").count() == 1
+        last = page.locator("dl.answer > div").last.bounding_box()
+        assert last is not None
+        assert last["y"] < 900
+
+
+@pytest.mark.parametrize("scheme", SCHEMES)
+@pytest.mark.parametrize("width", WIDTHS)
+@pytest.mark.parametrize("name", QUESTIONS)
+def test_a_page_can_be_read_by_everybody(
+    name: str, width: int, scheme: str, pages: Mapping[str, Path]
+) -> None:
+    """The rules of axe-core, all unfolded; nothing stands beyond the edge; letters are legible."""
+    with opened(pages[name], width, scheme) as page:
+        page.evaluate("document.querySelectorAll('details:not(.screen)').forEach(d => d.open = true)")
+        assert violations(page) == []
+        assert wider(page) == 0
+        if page.locator("svg.chart").count():
+            assert letters(page, "svg.chart text") > 10.0
+
+
+@pytest.mark.parametrize("name", QUESTIONS)
+def test_every_axis_has_its_unit(name: str, pages: Mapping[str, Path]) -> None:
+    text = pages[name].read_text(encoding="utf-8")
+    labels = re.findall(r'<text class="label"[^>]*>([^<]*)<', text)
+    assert bool(labels) == (name != "fleet")
+    assert all(re.search(r"\[.+\]", label) for label in labels)
+
+
+def test_a_command_is_copied(pages: Mapping[str, Path]) -> None:
+    with opened(pages["identify"]) as page:
+        command = page.locator("pre").first
+        command.get_by_role("button", name="Copy").press("Enter")
+        command.get_by_role("button", name="Copied").wait_for()
+
+
+def test_units_are_sorted_and_found_by_the_keyboard(pages: Mapping[str, Path]) -> None:
+    with opened(pages["fleet"]) as page:
+        first = page.locator("#units tbody tr").first
+        assert "u0" in first.inner_text()
+        page.get_by_role("button", name="unit").press("Enter")
+        assert "broken" in first.inner_text()
+        page.locator("#filter").fill("word")
+        assert page.locator("#units tbody tr:visible").count() == 1
+
+
+def test_what_is_uncertain_is_said_in_effort(pages: Mapping[str, Path]) -> None:
+    """A first moment of zero with a standard deviation that moves nothing is no complaint."""
+    train, _, test = three(None, 1, 0.0)
+    found = mg.identify(ARM, train=train, test=test).outcome.found
+    assert found.test is not None
+    for k, e in enumerate(found.estimates):
+        j = found.test.shown_by(k)
+        assert e.std is not None
+        assert j is not None
+        _, share = found.test.in_effort(k, e.std)
+        assert ((k, e) in found.poor()) == (not (e.relative and e.relative <= 30.0) and share > 1.0)
+    assert any(e.relative is None or e.relative > 30.0 for e in found.estimates)
+
+
+def test_the_effort_of_a_parameter_is_what_it_adds(pages: Mapping[str, Path]) -> None:
+    """By the model with a parameter changed, predicted anew."""
+    train, _, test = three(None, 1, 0.0)
+    result = mg.identify(ARM, train=train, test=test)
+    found = result.outcome.found
+    assert found.test is not None
+    assert found.test.sizes is not None
+    whole = np.sqrt(np.mean(found.test.measured**2, axis=0))
+    theta = np.array([e.value for e in found.estimates])
+    # no column alone is larger than a few times what all of them make together
+    assert (found.test.sizes * np.abs(theta) < 5.0 * whole[:, None]).all()
