@@ -55,8 +55,10 @@ class Generated(Shown):
         }
 
     def shown(self) -> Sequence[str | Table]:
-        """The table of `modelgen generate`, a line of at most 60 columns per arm: numbers of joints, of
-        standard and of base parameters, operations (mul + add + neg) of the inverse dynamics, files.
+        """The table of `modelgen generate`, a line of at most 60 columns per arm.
+
+        Numbers of joints, of standard and of base parameters, operations (mul + add + neg) of the inverse
+        dynamics, files.
 
         Returns
         -------
@@ -67,7 +69,7 @@ class Generated(Shown):
             [
                 arm.name,
                 str(arm.joints),
-                f"{arm.standard_parameters} → {arm.base_parameters}",
+                f"{arm.standard_parameters}→{arm.base_parameters}",
                 str(total(arm.operations["inverse_dynamics"])),
                 str(len(arm.files) + len(arm.artefacts)),
             ]

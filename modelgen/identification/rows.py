@@ -25,6 +25,7 @@ class Rows:
 
     While a joint rests, be it for a moment, dry friction is whatever holds it. The filter would carry that to
     rows beside, where it looks like other friction: effort and columns of such samples are taken out before.
+    Friction whose sign is smoothed holds no joint, and says as much there as elsewhere.
     all_samples: they stay, for rows that are to be looked at.
     joint, parameter: (c,), places in the regressor of the c columns that are computed; those of a joint
     stand side by side, at `of_joint`. With a C compiler, columns that depend on the motion alone are computed
@@ -34,6 +35,8 @@ class Rows:
     def __init__(self, model: Model, evaluator: Evaluator, *, all_samples: bool = False) -> None:
         self.model, self.evaluator, self.all_samples = model, evaluator, all_samples
         self.n, self.p = len(model.arm.coordinates), len(model.grouping.base)
+        joints = [model.arm.joints[i] for i in model.arm.coordinates]
+        self.slides = np.array([any(use.values.get("smoothing") for use in j.effects) for j in joints])
         self.joint = np.array(model.packed.rows, dtype=np.intp)
         self.parameter = np.array(model.packed.columns, dtype=np.intp)
         ends = np.searchsorted(self.joint, np.arange(self.n + 1))
@@ -73,7 +76,7 @@ class Rows:
         """Samples (N, n) that count, None: all. Those of joints that never move, which hold, do."""
         if self.all_samples or not p.settings.cutoff:  # without a filter nothing is carried
             return None
-        awake = p.awake | ~p.moving.any(axis=0)
+        awake = p.awake | self.slides | ~p.moving.any(axis=0)
         return None if awake.all() else awake
 
     def whole(self, columns: Array) -> Array:

@@ -27,7 +27,7 @@ pytestmark = pytest.mark.xdist_group("ariane_experiment")
 def points(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A trajectory of 80 s within the limits, of one start."""
     file = tmp_path_factory.mktemp("excite") / "run.csv"
-    call = ["excite", str(ARMS), "--arm", ARM, "--starts", "1", "--out", str(file)]
+    call = ["excite", str(ARMS), "--arm", ARM, "--rate", "10", "--starts", "1", "--out", str(file)]
     result = CliRunner().invoke(app, call)
     assert result.exit_code == 0, result.output
     return file.with_name("run_set_points.csv")

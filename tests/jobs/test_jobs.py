@@ -103,7 +103,7 @@ def test_a_trajectory_is_the_same_in_one_process_two_and_on_a_cluster(address: s
         answer = command(folder, *where)
         assert answer.returncode == 0, answer.stderr
         files[name] = {file.name: file.read_bytes() for file in folder.iterdir()}
-    assert len(files["one"]) == 4
+    assert len(files["one"]) == 5
     assert files["one"] == files["two"] == files["dask"]
 
 

@@ -137,21 +137,18 @@ def admissible(cause: Cause, equations: Equations) -> Check:
 
 
 def _out_of_step(cause: Cause, equations: Equations) -> str:
-    """Why a delay within a sample is none of the arm: when efforts are read is a convention of the log, and
-    it may read its channels in turn.
-    """
+    """Why a delay of one joint among others is none of the arm: a log may read its channels in turn."""
     c = cause.trial.candidate
     delay = c.definition.delays(cause.trial.parameters)
-    interval = max(r.prepared.record.step for r in equations.rows)
-    if delay is None or abs(delay) >= interval:
+    if delay is None or c.joint is None or equations.n == 1:
         return ""
-    if c.joint is None or equations.n == 1:
-        why = "when efforts are read is a convention of the log, `hold` in a mapping file"
-    else:
-        why = "a log may read one channel after the other"
-    alike = "of all efforts alike" if c.joint is None else "at one joint"
-    found = f"{delay:.2g} s {alike} is less than a sample of {interval:.2g} s"
-    return f"{found}: {why}; log faster to tell"
+    interval = max(r.prepared.record.step for r in equations.rows)
+    if abs(delay) >= interval:
+        return ""
+    return (
+        f"{delay:.2g} s at one joint is less than a sample of {interval:.2g} s, in which a log "
+        "may read one channel after the other; log faster to tell"
+    )
 
 
 def _gain(cause: Cause, equations: Equations) -> Check:
