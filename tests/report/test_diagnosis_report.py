@@ -195,7 +195,8 @@ def other(found: Diagnosis, verdict: str) -> Diagnosis:
     fit = found.lack_of_fit
     assert fit is not None
     worst = replace(fit.worst, statistic=9.0, joint=1)
-    left = replace(fit, worst=worst, by_joint=np.array([0.9, 9.0]))
+    whole = [replace(fit.worst, kind="whole", joint=j, statistic=x) for j, x in enumerate((0.9, 9.0))]
+    left = replace(fit, worst=worst, tests=whole)
     fits = {"outside_catalogue": left, "cannot_tell": None}
     return replace(bare, suspects=suspects, lack_of_fit=fits.get(verdict, fit))
 

@@ -21,6 +21,8 @@ from modelgen.functions.objects import Argument, Function, Model, least_guarded
 
 BATCH = "_batch"  # suffix of the functions
 SHARED = ("parameters", "geometry")  # inputs that all states have in common
+UNARY = ("tan", "asin", "acos", "atan", "exp", "log", "tanh")  # functions that lanes ask one after the other
+BINARY = ("atan2", "pow")
 
 
 @dataclass(frozen=True)
@@ -37,6 +39,14 @@ class Batch:
     block: tuple[str, ...]
     spread: tuple[str, ...]
     load: tuple[str, ...]
+
+
+def lane_by_lane() -> dict[str, list[tuple[str, str]]]:
+    """Functions of one and of two arguments that every lane calls for itself: names, and those of macros."""
+    return {
+        "unary": [(name, name.upper()) for name in UNARY],
+        "binary": [(name, name.upper()) for name in BINARY],
+    }
 
 
 def batches(model: Model) -> list[Batch]:

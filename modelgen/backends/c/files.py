@@ -6,7 +6,7 @@ import hashlib
 import re
 from collections.abc import Mapping
 
-from modelgen.backends.c.batch import BATCH, batches
+from modelgen.backends.c.batch import BATCH, batches, lane_by_lane
 from modelgen.backends.c.declarations import FunctionText, function_text, header_values, parameter_checks
 from modelgen.backends.c.dialect import INDENT, literal
 from modelgen.backends.c.levels import levels
@@ -65,7 +65,7 @@ def c_files(model: Model, provenance: Provenance) -> dict[str, str]:
     for stroke in strokes(model):
         files[f"src/{arm}_{stroke.name}.c"] = render("c/strokes.c.j2", **common, stroke=stroke)
     if model.batch:
-        files[f"src/{arm}_lanes.h"] = render("c/lanes.h.j2", **common)
+        files[f"src/{arm}_lanes.h"] = render("c/lanes.h.j2", **common, **lane_by_lane())
     for batch in batches(model):
         files[f"src/{arm}_{batch.name}{BATCH}.c"] = render("c/batch.c.j2", **common, batch=batch)
     digest = hashlib.sha256("".join(files[name] for name in sorted(files)).encode()).hexdigest()

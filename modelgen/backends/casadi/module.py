@@ -27,13 +27,16 @@ def casadi_files(model: Model, provenance: Provenance) -> dict[str, str]:
     """Text of `<arm>_casadi.py`, by its path below the arm's folder."""
     arm = model.arm.name
     names = {f.name for f in model.functions}
+    jacobian = any("_dynamics_derivatives" in name for name in names)
     text = render(
         "casadi/module.py.j2",
         arm=arm,
         remarks=remarks(model),
         provenance=provenance.head(arm),
         sections=model_sections(model),
-        custom_jacobian=any("_dynamics_derivatives" in name for name in names),
+        custom_jacobian=jacobian,
+        plain=not jacobian,
+        argument="custom_jacobian: bool = False" if jacobian else "",
         acados={"forward_dynamics", "inverse_dynamics"} <= names,
         nominal=[
             (f"{value!r},", f"# {p.name} {unit(p.unit)}")
