@@ -59,8 +59,8 @@ MUTATIONS = (
     Mutation(
         "equations",
         "rows.py",
-        "prepared.dq[:, [one]] + ratio",
-        "prepared.dq[:, [one]] - ratio",
+        "part.speed(prepared.dq)",
+        "prepared.dq[:, [part.one]] - part.ratio * prepared.dq[:, [part.other]]",
         "a coupling turns with the sum of two speeds instead of their difference",
         ("test_coupling_rests.py::test_rows_count_where_the_coupling_turns",),
     ),

@@ -9,10 +9,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from modelgen.dataset import Prepared
+from modelgen.dataset.couplings import Coupling, couplings_of
 from modelgen.dataset.processing.rest import moving_samples
 from modelgen.description import Arm
 from modelgen.diagnosis.equations.prior import Unknowns
-from modelgen.effects import CATALOGUE
 from modelgen.evaluation import Evaluator, Motion
 from modelgen.functions import Model
 from modelgen.numeric import Array
@@ -111,12 +111,14 @@ def turning(prepared: Prepared, joint: int, other: int, ratio: float) -> NDArray
 
     joint, other: numbers of the coordinates, from 1; ratio: turns of the first per turn of the other.
     """
-    one, other = joint - 1, other - 1
-    gates = prepared.settings.gates
-    own = replace(prepared.settings, gates=(gates[one] + abs(ratio) * gates[other],))
-    speed = prepared.dq[:, [one]] + ratio * prepared.dq[:, [other]]
+    return _turning(Coupling(joint - 1, other - 1, ratio), prepared)
+
+
+def _turning(part: Coupling, prepared: Prepared) -> NDArray[np.bool_]:
+    own = replace(prepared.settings, gates=(part.gate(prepared.settings.gates),))
+    speed, rate = part.speed(prepared.dq), 1.0 / prepared.record.step
     found = np.ones((len(prepared.rows), prepared.n), dtype=bool)
-    found[:, [one, other]] = moving_samples(speed, prepared.rows, own, 1.0 / prepared.record.step)
+    found[:, [part.one, part.other]] = moving_samples(speed, prepared.rows, own, rate)
     return found
 
 
@@ -125,9 +127,6 @@ def of_arm(arm: Arm, prepared: Prepared) -> NDArray[np.bool_]:
     found = np.ones((len(prepared.rows), prepared.n), dtype=bool)
     if prepared.input is None:
         return found
-    for number, i in enumerate(arm.coordinates, start=1):
-        for used in arm.joints[i].effects:
-            pair = CATALOGUE[used.name].coupled(used.values)
-            if pair is not None:
-                found &= turning(prepared, number, *pair)
+    for part in couplings_of(arm):
+        found &= _turning(part, prepared)
     return found
