@@ -15,7 +15,7 @@ from modelgen.diagnosis.adequacy.checks import (
     admissible,
     confirmed,
     ended_by_suspects,
-    explains,
+    explained,
     significant,
 )
 from modelgen.diagnosis.adequacy.dominance import dominance
@@ -76,12 +76,12 @@ def test_a_law_that_leaves_much_of_what_repeats_lends_it_no_name(wave: float, pa
     assert gain is not None
     trial = FittedCandidate(Candidate("friction_offset", 1), {}, columns, gain)
     system = system_of(rows, with_causes(equations, [trial]), periods)
-    check = explains(0, Selection([Cause(trial, gain.delta_bic, 5.0, 5.0)], system, []))
+    (check,) = explained(Selection([Cause(trial, gain.delta_bic, 5.0, 5.0)], system, []), {})
     assert check.decides
     assert check.passed is passed
     assert gain.delta_bic > 50.0  # it has evidence all the same
     nothing = system_of(rows, with_causes(equations, [trial]))
-    assert explains(0, Selection([Cause(trial, 0.0, 0.0, 0.0)], nothing, [])).passed is None
+    assert explained(Selection([Cause(trial, 0.0, 0.0, 0.0)], nothing, []), {})[0].passed is None
 
 
 @pytest.mark.parametrize("harmonic", [0.25, 1.0 / 3.0, 2.0])

@@ -18,7 +18,8 @@ from threshold_support import Seen, band, known, law, logs, real, refusal, value
 
 from modelgen.description import Inertial
 from modelgen.diagnosis.adequacy import lack_of_fit
-from modelgen.diagnosis.adequacy.checks import explains
+from modelgen.diagnosis.adequacy.checks import explained
+from modelgen.diagnosis.adequacy.free_form import further_terms
 from modelgen.diagnosis.adequacy.lack_of_fit import in_parts
 from modelgen.diagnosis.adequacy.smooth_functions import smooth_functions
 from modelgen.diagnosis.adequacy.stand_ins import like_delta_bic
@@ -72,7 +73,7 @@ def explaining(limits: Thresholds) -> Any:
     equations = known(limits, lambda x: 0.3 + 0.3 * np.sin(5.0 * x))
     trial = law(equations, np.ones_like)
     system = System(equations, with_columns(equations, trial))
-    return explains(0, Selection([Cause(trial, 0.0, 0.0, 0.0)], system, [])).passed
+    return explained(Selection([Cause(trial, 0.0, 0.0, 0.0)], system, []), {})[0].passed
 
 
 def completed(limits: Thresholds) -> Any:
@@ -89,7 +90,8 @@ def completed(limits: Thresholds) -> Any:
     trial = Search(System(equations)).trial(candidate)
     assert trial is not None
     system = System(equations, with_columns(equations, trial))
-    return explains(0, Selection([Cause(trial, trial.gain.delta_bic, 0.0, 0.0)], system, [])).passed
+    selection = Selection([Cause(trial, trial.gain.delta_bic, 0.0, 0.0)], system, [])
+    return explained(selection, further_terms(selection))[0].passed
 
 
 def stepped(limits: Thresholds) -> Any:

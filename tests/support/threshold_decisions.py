@@ -252,7 +252,7 @@ def freely(limits: Thresholds, column: Any) -> bool:
     ]
     equations = equations.with_rows(given)
     trial = at_first_joint(equations, [column(x) for x in hidden])
-    return free_forms(selected(equations, trial), equations)[1].better
+    return free_forms(selected(equations, trial), equations, {})[1].better
 
 
 def clipped(x: Array) -> Array:

@@ -10,6 +10,7 @@ import numpy as np
 from modelgen.diagnosis.adequacy.dominance import Dominance, dominance
 from modelgen.diagnosis.adequacy.free_form import FreeForm, free_forms, further_terms
 from modelgen.diagnosis.adequacy.lack_of_fit import lack_of_fit, repeating
+from modelgen.diagnosis.adequacy.smooth_functions import Worth
 from modelgen.diagnosis.candidates import with_causes
 from modelgen.diagnosis.equations import Equations
 from modelgen.diagnosis.evidence import covariance, mean_squares
@@ -35,7 +36,8 @@ class Examined:
 
 def examined(selection: Selection, equations: Equations) -> list[Examined]:
     """Every cause of the selection with its checks. equations: of the band, all rows that move."""
-    forms = free_forms(selection, equations)
+    terms = further_terms(selection)
+    forms, shares = free_forms(selection, equations, terms), explained(selection, terms)
     every = [
         Examined(
             cause,
@@ -46,7 +48,7 @@ def examined(selection: Selection, equations: Equations) -> list[Examined]:
                 _gain(cause, equations),
                 _undominated(dominance(cause, selection)),
                 _form(forms.get(cause.trial.candidate.joint)),
-                explains(k, selection),
+                shares[k],
                 _stable(k, selection),
             ),
         )
@@ -189,40 +191,45 @@ def _stable(k: int, selection: Selection) -> Check:
     return Check("stable", None if np.isnan(found) else found >= least, False, found, least, text)
 
 
-def explains(k: int, selection: Selection) -> Check:
-    """Whether the causes at the joints of the cause k explain most of what is not noise there.
+def explained(selection: Selection, terms: Mapping[int, Worth]) -> list[Check]:
+    """Whether the causes at the joints of each cause explain most of what is not noise there.
 
     What still repeats from period to period is not noise; what errors of the positions repeat is no lack of
     the model, and what the further terms of a law that is the first ones of a series explain is its own,
     where they are the lesser part. A law that stands in for one that the catalogue lacks leaves more than the
-    law itself would. Passed as well where no more repeats than noise leaves by chance.
+    law itself would. Passed as well where no more repeats than noise leaves by chance. terms: by joint, see
+    `further_terms`.
     """
-    system = selection.system
-    equations, limits = system.equations, system.equations.thresholds.adequacy
-    joints = selection.causes[k].trial.candidate.joints(system.n)
+    system, limits = selection.system, selection.system.equations.thresholds.adequacy
+    equations, least = system.equations, limits.min_explained_share
     text = "share of what is not noise at its joints that the causes there explain together"
     fit = lack_of_fit(system)
     if fit is None:
-        return Check("explains", None, True, float("nan"), limits.min_explained_share, text)
+        return [Check("explains", None, True, float("nan"), least, text) for _ in selection.causes]
     sizes = mean_squares(system)
     bare = rmse(equations.rows, equations.columns, weighted_fit(equations.rows, equations.columns)) ** 2
     left = np.maximum(0.0, repeating(system) - _repeating_errors(equations))
-    left = np.maximum(0.0, left - _of_further_terms(selection, joints))
-    gained, rest = (float((squares / sizes)[joints].sum()) for squares in (bare - sizes, left))
-    found = gained / (gained + rest) if gained + rest > 0.0 else 0.0
-    passed = found >= limits.min_explained_share or fit.usual(joints, limits.usual_null_share)
-    return Check("explains", passed, True, found, limits.min_explained_share, text)
+    left = np.maximum(0.0, left - _of_further_terms(selection, terms))
+    gained, rest = (bare - sizes) / sizes, left / sizes
+    found = []
+    for cause in selection.causes:
+        joints = cause.trial.candidate.joints(system.n)
+        more, less = float(gained[joints].sum()), float(rest[joints].sum())
+        share = more / (more + less) if more + less > 0.0 else 0.0
+        passed = share >= least or fit.usual(joints, limits.usual_null_share)
+        found.append(Check("explains", passed, True, share, least, text))
+    return found
 
 
-def _of_further_terms(selection: Selection, joints: Sequence[int]) -> Array:
-    """Mean squares (n,) that the further terms of the laws at these joints explain beside all causes."""
+def _of_further_terms(selection: Selection, terms: Mapping[int, Worth]) -> Array:
+    """Mean squares (n,) that the further terms of laws explain beside all causes, where they are lesser."""
     system, sizes, found = selection.system, mean_squares(selection.system), np.zeros(selection.system.n)
     most = system.equations.thresholds.adequacy.max_further_terms_share
     for cause in selection.causes:
         c = cause.trial.candidate
-        if c.joint is None or c.joint - 1 not in joints or not c.definition.series:
+        if c.joint is None or not c.definition.series:
             continue
-        best = max(further_terms(c.joint, system), key=lambda worth: worth.evidence)
+        best = terms[c.joint]
         if 0.0 < best.evidence < most * cause.delta_bic:
             found[c.joint - 1] = sizes[c.joint - 1] * (1.0 - (1.0 - best.percent / 100.0) ** 2)
     return found

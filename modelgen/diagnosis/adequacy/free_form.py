@@ -6,7 +6,7 @@ whatever a friction or a force over the joint does, it can. Laws that are there 
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -14,7 +14,6 @@ import numpy as np
 from modelgen.diagnosis.adequacy.smooth_functions import SmoothFunction, Worth, functions, log_evidence
 from modelgen.diagnosis.candidates import system_of
 from modelgen.diagnosis.equations import Equations
-from modelgen.diagnosis.evidence import System
 from modelgen.diagnosis.selection import Selection, together
 
 
@@ -35,12 +34,14 @@ class FreeForm:
         return self.ahead > self.most and self.beside >= self.least
 
 
-def free_forms(selection: Selection, equations: Equations) -> dict[int | None, FreeForm]:
+def free_forms(
+    selection: Selection, equations: Equations, terms: Mapping[int, Worth]
+) -> dict[int | None, FreeForm]:
     """Find, for each joint with causes, the free function that is ahead of them by most.
 
     Asked for all causes of a joint together; a cause whose law is the first terms of a series counts with the
     function that the series would come to. Not of elastic joints and play, whose own laws are none of the
-    joint's motion, of causes of the whole arm, or of free motions.
+    joint's motion, of causes of the whole arm, or of free motions. terms: by joint, see `further_terms`.
     """
     if equations.free:
         return {}
@@ -55,7 +56,7 @@ def free_forms(selection: Selection, equations: Equations) -> dict[int | None, F
         evidence = together(own, without, fair=True)
         rest = 0.0  # of the series, which is no other cause
         if any(t.candidate.definition.series for t in own):
-            rest = max(rest, *(worth.evidence for worth in further_terms(joint, selection.system)))
+            rest = max(rest, terms[joint].evidence)
         most = max(limits.max_free_form_ahead, limits.max_free_form_share * max(evidence, 0.0))
         tried = []
         for shape in _functions(joint - 1, equations):
@@ -66,9 +67,23 @@ def free_forms(selection: Selection, equations: Equations) -> dict[int | None, F
     return found
 
 
-def further_terms(joint: int, system: System) -> list[Worth]:
-    """Find what functions of a joint's position times its direction are worth beside the system's columns."""
-    return [log_evidence(shape, system) for shape in _functions(joint - 1, system.equations, series=True)]
+def further_terms(selection: Selection) -> dict[int, Worth]:
+    """Find, for each joint with a law that is the first terms of a series, what further ones are worth.
+
+    Beside all causes, of the functions of the joint's position times its direction the best one. None of a
+    free motion.
+    """
+    system = selection.system
+    joints = {c.trial.candidate.joint for c in selection.causes if c.trial.candidate.definition.series}
+    if system.equations.free:
+        return {}
+    return {
+        joint: max(
+            (log_evidence(shape, system) for shape in _functions(joint - 1, system.equations, series=True)),
+            key=lambda worth: worth.evidence,
+        )
+        for joint in sorted(j for j in joints if j is not None)
+    }
 
 
 def _functions(j: int, equations: Equations, series: bool = False) -> Iterator[SmoothFunction]:
