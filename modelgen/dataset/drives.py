@@ -6,9 +6,11 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import lru_cache
 
+import numpy as np
 import sympy as sp
 
 from modelgen.description import Arm, geometry_symbol
+from modelgen.numeric import Array
 from modelgen.transmission import Curves, Transmission, curves, of_joint
 
 
@@ -38,6 +40,11 @@ def drives_of(arm: Arm) -> tuple[NumericDrive, ...]:
         _known.insert(0, (arm, found))
         del _known[_KEPT:]
     return found
+
+
+def gains(arm: Arm, q: Array) -> Array:
+    """Motor's speed over its joint's, (N, n), along positions q (N, n) of the coordinates."""
+    return np.column_stack([drive.gain(x) for drive, x in zip(drives_of(arm), q.T, strict=True)])
 
 
 @lru_cache(maxsize=64)

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from modelgen.dataset import Prepared, drives_of
+from modelgen.dataset.drives import gains
 from modelgen.errors import InputError
 from modelgen.evaluation import Evaluator, Motion
 from modelgen.functions import Model, grouped
@@ -46,9 +47,9 @@ def doubts(
     if not links[1]:
         return found
     along = _columns(model, evaluator, q, ddq, theta)
-    gains = np.column_stack([drive.gain(x) for drive, x in zip(drives_of(model.arm), q.T, strict=True)])
-    weight = _weight(model, q, at_rest, links, theta, determined)
-    return [*found, *(weight or _one_link(model, along * gains[:, :, None], links, theta, determined))]
+    gain = gains(model.arm, q)
+    weight = _weight(model, gain, at_rest, links, theta, determined)
+    return [*found, *(weight or _one_link(model, along * gain[:, :, None], links, theta, determined))]
 
 
 def _motion(p: Prepared) -> tuple[Array, Array, Array]:
@@ -134,9 +135,9 @@ def _one_link(
     """
     of_links, own = links
     used = of_links & determined
-    gain = columns[:, :, used].reshape(-1, int(used.sum()))
-    parts = [gain @ x[used] for x in own]
-    nominal, seen = sum(parts, np.zeros(len(gain))), gain @ theta[used]
+    table = columns[:, :, used].reshape(-1, int(used.sum()))
+    parts = [table @ x[used] for x in own]
+    nominal, seen = sum(parts, np.zeros(len(table))), table @ theta[used]
     apart = seen - nominal
     if np.linalg.norm(apart) < PART * min(float(np.linalg.norm(x)) for x in (seen, nominal)):
         return []
@@ -155,7 +156,7 @@ def _one_link(
 
 def _weight(
     model: Model,
-    q: Array,
+    gain: Array,
     at_rest: Array,
     links: tuple[NDArray[np.bool_], list[Array]],
     theta: Array,
@@ -166,7 +167,6 @@ def _weight(
     nominal = np.sum(own, axis=0)
     described, seen = (at_rest[:, :, of_links] @ x[of_links] for x in (nominal, theta))
     lost = np.asarray(at_rest[:, :, of_links & ~determined].any(axis=(0, 2)))
-    gain = np.column_stack([drive.gain(q[:, j]) for j, drive in enumerate(drives_of(model.arm))])
     power = ((described * gain) ** 2).mean(axis=0)
     notable = np.maximum(power, ((seen * gain) ** 2).mean(axis=0))
     said = []

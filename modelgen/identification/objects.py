@@ -100,11 +100,10 @@ class Identification:
         """Parameters that are poorly determined, with their numbers: of themselves and in the effort, where a
         test record says so.
         """
-        found = []
-        for k, e in enumerate(self.estimates):
-            if e.std is None or e.dropped or (e.relative is not None and e.relative <= POOR):
-                continue
-            known = self.test is not None and self.test.sizes is not None
-            if not known or (self.test is not None and self.test.in_effort(k, e.std)[1] > MATTERS):
-                found.append((k, e))
-        return found
+        test = self.test if self.test is not None and self.test.sizes is not None else None
+        return [
+            (k, e)
+            for k, e in enumerate(self.estimates)
+            if not (e.std is None or e.dropped or (e.relative is not None and e.relative <= POOR))
+            and (test is None or test.in_effort(k, e.std)[1] > MATTERS)
+        ]

@@ -21,6 +21,8 @@ from modelgen.functions.objects import Function, Model
 
 _SPELLING = {"abs": "fabs", "min": "fmin", "max": "fmax", "pow": "power"}
 _INDENT = "    "
+_PLAIN = "ca.SX.sym, function"  # of symbols and functions of an AcadosModel
+_BY_CHOICE = f"(ca.MX.sym, with_jacobian) if custom_jacobian else ({_PLAIN})"
 
 
 def casadi_files(model: Model, provenance: Provenance) -> dict[str, str]:
@@ -35,8 +37,8 @@ def casadi_files(model: Model, provenance: Provenance) -> dict[str, str]:
         provenance=provenance.head(arm),
         sections=model_sections(model),
         custom_jacobian=jacobian,
-        plain=not jacobian,
         argument="custom_jacobian: bool = False" if jacobian else "",
+        made=_BY_CHOICE if jacobian else _PLAIN,
         acados={"forward_dynamics", "inverse_dynamics"} <= names,
         nominal=[
             (f"{value!r},", f"# {p.name} {unit(p.unit)}")

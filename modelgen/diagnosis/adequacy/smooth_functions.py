@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial.distance import cdist
 
-from modelgen.dataset import drives_of
+from modelgen.dataset.drives import gains
 from modelgen.diagnosis.evidence import StackedEquations, System
 from modelgen.numeric import Array
 
@@ -50,11 +50,10 @@ def smooth_functions(system: System) -> Iterator[SmoothFunction]:
     equations, rows, n = system.equations, system.rows, system.n
     limits = equations.thresholds.adequacy
     inputs = [equations.evaluator.inputs(r.motion, system.base) for r in rows]
-    drives = drives_of(equations.arm)
-    power = []
-    for r, u in zip(rows, inputs, strict=True):
-        gains = np.column_stack([drive.gain(r.prepared.q[:, j]) for j, drive in enumerate(drives)])
-        power.append(np.abs(gains * u * r.prepared.dq).sum(axis=1, keepdims=True))
+    power = [
+        np.abs(gains(equations.arm, r.prepared.q) * u * r.prepared.dq).sum(axis=1, keepdims=True)
+        for r, u in zip(rows, inputs, strict=True)
+    ]
     for j in range(n):
         alone = functions([r.prepared.q[:, [j]] for r in rows], limits.spot_length)
         spots = [r.equation(j, x) for r, x in zip(rows, alone, strict=True)]

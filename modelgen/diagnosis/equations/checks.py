@@ -7,7 +7,8 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from modelgen.dataset import Prepared, drives_of
+from modelgen.dataset import Prepared
+from modelgen.dataset.drives import gains
 from modelgen.diagnosis.equations.equations import Equations
 from modelgen.diagnosis.equations.rows import Rows
 from modelgen.errors import InputError
@@ -126,12 +127,12 @@ def _work_of_effects(equations: Equations) -> Array:
     """Work that drives and friction take from the motion of all records, over that of the efforts, both in
     size, by joint (n,).
     """
-    rows, drives = equations.rows, drives_of(equations.arm)
+    rows = equations.rows
     theta, effects = weighted_fit(rows, equations.columns), columns_of_effects(equations.model)
     taken, power = np.zeros(equations.n), np.zeros(equations.n)
     for r in rows:
         q, dq = r.prepared.picked(r.prepared.q), r.prepared.picked(r.prepared.dq)
-        speed = dq * np.column_stack([drive.gain(q[:, j]) for j, drive in enumerate(drives)])
+        speed = dq * gains(equations.arm, q)
         taken += (r.columns[:, :, effects] @ theta[effects] * speed * r.moving).sum(axis=0)
         power += (np.abs(r.effort * speed) * r.moving).sum(axis=0)
     return np.asarray(taken / np.maximum(power, 1e-300))

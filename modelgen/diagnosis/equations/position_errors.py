@@ -119,6 +119,8 @@ def _left_by_errors(
 ) -> Array:
     """A draw of what errors of the positions leave in a record's residuals (M, n). which: as of `blurred`."""
     p, limits = r.prepared, equations.thresholds.equations
+    if p.input is None and not counts(p.record, limits).any():
+        return np.zeros(r.effort.shape)
     blurry = replace(prepare(blurred(p, limits, which), p.settings), awake=p.awake)
     again = equations.of_record(blurry, theta)
     return np.asarray((again.effort - r.effort) - (again.columns - r.columns) @ theta)
