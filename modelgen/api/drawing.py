@@ -65,7 +65,7 @@ class Drawing(Shown):
         dict
             The arm's name, its coordinates by joint [rad, m] and the size of the page [bytes].
         """
-        names = [self.arm.joints[i].name for i in self.arm.coordinates]
+        names = self.arm.coordinate_names
         return {
             "arm": self.arm.name,
             "q": dict(zip(names, self.q, strict=True)),
@@ -115,7 +115,7 @@ def draw(arm: Arm, out: Path | str | None = None, q: str | float | Sequence[floa
     """
     if out is not None:
         check_writable("--out", Path(out))
-    names = [arm.joints[i].name for i in arm.coordinates]
+    names = arm.coordinate_names
     found = Drawing(arm, start(arm) if q is None else by_joint("--q", q, names).tolist())
     if out is not None:
         found.write(out)

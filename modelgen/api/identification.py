@@ -19,7 +19,7 @@ from modelgen.identification.workflow import Outcome, identify_logs
 from modelgen.options import IdentificationOptions, changed
 from modelgen.progress import Progress, silent
 from modelgen.report.identification import models, picture, report, table
-from modelgen.report.words import joint_name, joint_names
+from modelgen.report.words import joint_name
 
 
 class Identification(Result):
@@ -77,7 +77,7 @@ class Identification(Result):
             "report.html": report(found, o.others, data["verdict"], _processing(o), drawn),
         }
         if found.test is not None:
-            files["test.svg"] = picture(found.test, joint_names(found.arm), o.others)
+            files["test.svg"] = picture(found.test, found.arm.coordinate_names, o.others)
         if found.gains:
             constants = {g.joint: g.value for g in found.gains}
             files[f"{name}_identified.yaml"] = with_torque_constants(found.arm, constants)
@@ -115,7 +115,7 @@ class Identification(Result):
         if found.test is not None:
             parts += _test_tables(found.test, o)
         if o.folds is not None:
-            heads = {"held out": "left"} | dict.fromkeys(joint_names(self.arm), "right")
+            heads = {"held out": "left"} | dict.fromkeys(self.arm.coordinate_names, "right")
             rows = [[name, *(f"{x:.1f}" for x in part.nrmse_percent)] for name, part in o.folds.parts]
             rows.append(["all together", *(f"{x:.1f}" for x in o.folds.nrmse_percent)])
             title = "NRMSE % of parts of the training records, each held out in its turn"
@@ -181,7 +181,7 @@ def _processing(o: Outcome) -> list[str]:
 
 
 def _test_tables(test: Validation, o: Outcome) -> list[str | Table]:
-    names = joint_names(o.found.arm)
+    names = o.found.arm.coordinate_names
     rows = [[names[j], a, test.unit[j], b] for j, (a, b) in enumerate(table(test))]
     columns = dict.fromkeys(("joint", "RMSE", "unit", "NRMSE %"), "right")
     parts: list[str | Table] = [Table("test records", columns, rows)]

@@ -66,7 +66,7 @@ class Model(Shown):
         return {
             "arm": arm.name,
             "joints": len(arm.coordinates),
-            "coordinates": [arm.joints[i].name for i in arm.coordinates],
+            "coordinates": arm.coordinate_names,
             "standard_parameters": [p.name for p in model.standard],
             "base_parameters": [
                 {"name": p.name, "expression": p.expression, "unit": p.unit} for p in model.grouping.base
@@ -86,7 +86,7 @@ class Model(Shown):
             In the order in which they are printed.
         """
         arm, model = self.arm, self.built
-        names = [arm.joints[i].name for i in arm.coordinates]
+        names = arm.coordinate_names
         parts: list[str | Table] = [
             f"{arm.name}: {len(names)} joint{'s' if len(names) > 1 else ''} ({', '.join(names)})"
         ]

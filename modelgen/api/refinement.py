@@ -16,7 +16,6 @@ from modelgen.identification.refinement import refine_logs, to_json
 from modelgen.options import RefinementOptions, changed
 from modelgen.progress import Progress, silent
 from modelgen.report.refinement import picture, report
-from modelgen.report.words import joint_names
 
 
 class Refinement(Result):
@@ -86,7 +85,7 @@ class Refinement(Result):
         keys = ("f_gof_before", "f_gof", "rmse_before", "rmse")
         joints = [
             [name, *(f"{j[k]:.4g}" for k in keys), j["unit"]]
-            for name, j in zip(joint_names(self.arm), self.to_json()["joints"], strict=True)
+            for name, j in zip(self.arm.coordinate_names, self.to_json()["joints"], strict=True)
         ]
         headings = ("joint", "F_gof % before", "after", "RMSE before", "after ", "unit")
         parameters = dict.fromkeys(("parameter", "start", "value", "std", "unit"), "right")

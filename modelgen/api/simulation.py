@@ -14,7 +14,7 @@ from modelgen.numeric import Array
 from modelgen.options import SimulationOptions, changed
 from modelgen.progress import Progress, silent
 from modelgen.report.animation import animation
-from modelgen.simulation.output import log_table, picture, table, units
+from modelgen.simulation.output import log_table, picture, table
 from modelgen.simulation.workflow import Simulated, simulated
 
 
@@ -191,7 +191,7 @@ def _motion(s: Simulated) -> list[str | Table]:
     rows = [
         [name, f"{q0:.6g}", f"{q1:.6g}", f"{low:.6g}", f"{high:.6g}", unit]
         for name, q0, q1, low, high, unit in zip(
-            p.names, q[0], q[-1], q.min(axis=0), q.max(axis=0), units(p), strict=True
+            p.names, q[0], q[-1], q.min(axis=0), q.max(axis=0), p.arm.coordinate_units, strict=True
         )
     ]
     headings = {"joint": "left"} | dict.fromkeys(("q begin", "q end", "lowest", "highest"), "right")

@@ -24,7 +24,7 @@ class Element:
 def coordinates(model: Model) -> tuple[Element, ...]:
     """The coordinates q of an arm."""
     return tuple(
-        Element(joint.name, "m" if joint.type == "prismatic" else "rad", f"{joint.type}, {joint.drive.title}")
+        Element(joint.name, joint.unit, f"{joint.type}, {joint.drive.title}")
         for joint in (model.arm.joints[i] for i in model.arm.coordinates)
     )
 

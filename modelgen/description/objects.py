@@ -87,6 +87,11 @@ class Joint:
         """Whether the joint has a coordinate in the model."""
         return self.type != "fixed" and self.locked is None
 
+    @property
+    def unit(self) -> str:
+        """Unit of its coordinate."""
+        return "m" if self.type == "prismatic" else "rad"
+
 
 @dataclass(frozen=True)
 class Inertial:
@@ -198,6 +203,16 @@ class Arm:
     def coordinates(self) -> tuple[int, ...]:
         """Indices into `joints` of the model's coordinates q1..qn, in order."""
         return tuple(i for i, joint in enumerate(self.joints) if joint.moving)
+
+    @property
+    def coordinate_names(self) -> list[str]:
+        """Names of the joints of the coordinates."""
+        return [self.joints[i].name for i in self.coordinates]
+
+    @property
+    def coordinate_units(self) -> list[str]:
+        """Units of the coordinates, rad or m."""
+        return [self.joints[i].unit for i in self.coordinates]
 
     @property
     def order(self) -> tuple[int, ...]:

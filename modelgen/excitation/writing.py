@@ -56,7 +56,7 @@ def data(e: Excitation) -> dict[str, Any]:
     for k, i in enumerate(e.arm.coordinates):
         unit = drives_of(e.arm)[k].unit
         if s.coordinates == "joint":
-            unit = "m" if e.arm.joints[i].type == "prismatic" else "rad"
+            unit = e.arm.joints[i].unit
         joints.append(
             {
                 "joint": k + 1,

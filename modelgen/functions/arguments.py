@@ -13,7 +13,7 @@ LARGEST_GAIN = 1e5  # norm of the observer's gains [1/s]
 
 def joint_units(arm: Arm, per: str = "") -> str:
     """rad and m joint by joint: "rad" where all are revolute."""
-    units = ["m" if arm.joints[i].type == "prismatic" else "rad" for i in arm.coordinates]
+    units = arm.coordinate_units
     return _together([unit + per for unit in units])
 
 
@@ -40,7 +40,7 @@ def motor_units(equations: Equations, per: str = "") -> str:
     """Units of the motor coordinates."""
     units = []
     for drive, i in zip(equations.drives, equations.arm.coordinates, strict=True):
-        joint = "m" if equations.arm.joints[i].type == "prismatic" else "rad"
+        joint = equations.arm.joints[i].unit
         units.append((drive.transmission.unit if drive.transmission.driven else joint) + per)
     return _together(units)
 

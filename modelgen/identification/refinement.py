@@ -55,7 +55,7 @@ def to_json(found: Refinement) -> dict[str, Any]:
             for x in found.parameters
         ],
         "joints": [
-            {"joint": k + 1, "unit": "m" if arm.joints[i].type == "prismatic" else "rad"}
+            {"joint": k + 1, "unit": arm.joints[i].unit}
             | by_joint(found.before, k, "_before")
             | by_joint(found.after, k, "")
             for k, i in enumerate(arm.coordinates)

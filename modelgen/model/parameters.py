@@ -75,7 +75,7 @@ def coordinate_unit(arm: Arm, effect: AppliedEffect) -> str:
     transmission = of_joint(arm, joint)
     if effect.side == "motor" and transmission.driven:
         return transmission.unit
-    return "m" if joint.type == "prismatic" else "rad"
+    return joint.unit
 
 
 def unit_of(pattern: str, coordinate: str) -> str:

@@ -30,7 +30,7 @@ from modelgen.report.law_figures import judged_joint, law_charts, law_size
 from modelgen.report.named_joints import named_joints
 from modelgen.report.page import block, rendered
 from modelgen.report.ranking import rankings
-from modelgen.report.words import at, by_name, finding, joint_name, joint_names, law, sentence
+from modelgen.report.words import at, by_name, finding, joint_name, law, sentence
 
 # By whether the test record is a free motion.
 _ERRORS = {
@@ -103,7 +103,7 @@ def _cause(d: Diagnosis, k: int) -> dict[str, Any]:
     size = law_size(d, k)
     said = ""
     if size is not None:
-        where = joint_names(d.arm)[judged_joint(d, k)]
+        where = d.arm.coordinate_names[judged_joint(d, k)]
         sizes = f"{number(size[0], 2)} of the {number(size[1], 2)} {size[2]}"
         said = f"Its size on the test record: {sizes} of {where} (RMS)."
     return _as_shown(d, c, f"cause{k}") | {"size": said, "charts": block(law_charts(d, k))}

@@ -9,7 +9,6 @@ from modelgen.dataset.drives import drives_of
 from modelgen.diagnosis.equations import Rows
 from modelgen.diagnosis.result import Diagnosis
 from modelgen.numeric import Array
-from modelgen.report.words import joint_names
 
 _WINDOWS = 24  # of the simulated motion that are shown
 HELD = 5  # samples, at least, that a mean is made of
@@ -24,7 +23,7 @@ def efforts(d: Diagnosis) -> list[Chart]:
     missed = [np.where(held.moving, r, np.nan) for r in d.residuals]
     units, charts = units_of(d), []
     word = "of the links" if free else "measured"
-    for j, name in enumerate(joint_names(d.arm)):
+    for j, name in enumerate(d.arm.coordinate_names):
         curves = [Curve(t, measured[:, j], "measured", word)]
         left = [Curve(t, missed[0][:, j], "before", BEFORE)]
         curves.append(Curve(t, measured[:, j] - missed[0][:, j], "before", BEFORE))
@@ -53,14 +52,9 @@ def units_of(d: Diagnosis) -> list[str]:
     return ["A" if j.drive.driven else u for j, u in zip(joints, forces, strict=True)]
 
 
-def position_units(d: Diagnosis) -> list[str]:
-    """Units of the joint coordinates."""
-    return ["m" if d.arm.joints[i].type == "prismatic" else "rad" for i in d.arm.coordinates]
-
-
 def against(d: Diagnosis) -> dict[str, tuple[Array, list[str]]]:
     """Abscissae for the residuals of the test record: (M, n) each, and their units by joint."""
-    p, positions = d.test.prepared, position_units(d)
+    p, positions = d.test.prepared, d.arm.coordinate_units
     driven = zip(drives_of(d.arm), positions, strict=True)
     motors = [drive.unit if drive.driven else unit for drive, unit in driven]
     motors = ["motor unit" if unit == "unit" else unit for unit in motors]
@@ -83,7 +77,7 @@ def bins_of(name: str) -> int:
 
 def residuals(d: Diagnosis) -> dict[str, list[Chart]]:
     """Means of the residuals over bins of speed, position, load and so on, before and after, by joint."""
-    held, efforts, names = d.test, units_of(d), joint_names(d.arm)
+    held, efforts, names = d.test, units_of(d), d.arm.coordinate_names
     found = {}
     for over, (x, units) in against(d).items():
         charts = []
@@ -121,8 +115,8 @@ def replayed(d: Diagnosis) -> list[Chart]:
     shown = [s for s in d.simulation if s is not None]
     if not shown:
         return []
-    unit, charts = position_units(d), []
-    for j, name in enumerate(joint_names(d.arm)):
+    unit, charts = d.arm.coordinate_units, []
+    for j, name in enumerate(d.arm.coordinate_names):
         left: list[Curve] = []
         right: list[Curve] = []
         for scores, role, label in zip(d.simulation, ("before", "after"), (BEFORE, AFTER), strict=True):

@@ -9,7 +9,7 @@ from modelgen.description import Arm
 from modelgen.diagnosis.result import Diagnosis
 from modelgen.diagnosis.validation import Check
 from modelgen.effects import CATALOGUE, Family
-from modelgen.report.words import at, by_name, finding, joint_name, joint_names, listed, sentence
+from modelgen.report.words import at, by_name, finding, joint_name, listed, sentence
 
 _SENTENCES = {
     "nothing_missing": "Nothing is missing that these records could show.",
@@ -101,7 +101,7 @@ def _size(d: Diagnosis) -> str:
         return ""
     said = []
     effort = held.effort * held.gain
-    for j, name in enumerate(joint_names(d.arm)):
+    for j, name in enumerate(d.arm.coordinate_names):
         moving = held.moving[:, j]
         share = max(float(f.by_joint[j]) - 1.0, 0.0) / f.periods
         if share and moving.any():

@@ -8,7 +8,6 @@ from modelgen.charts import Chart, Curve, number, sheet
 from modelgen.dataset.drives import drives_of
 from modelgen.excitation import Excitation
 from modelgen.report.page import Command, Grid, Lines, Parts, Text, block, page
-from modelgen.report.words import joint_names
 
 _GOOD, _FAIR = (
     30.0,
@@ -25,7 +24,7 @@ _SIDES = (
 def charts(e: Excitation) -> list[Chart]:
     """Position and speed on both sides of every drive over one period."""
     drives, found = drives_of(e.arm), []
-    for k, name in enumerate(joint_names(e.arm)):
+    for k, name in enumerate(e.arm.coordinate_names):
         angle = e.arm.joints[e.arm.coordinates[k]].type != "prismatic"
         own = "deg" if angle else "m"
         units = {"joint": own, "motor": drives[k].unit if drives[k].driven else own}

@@ -12,7 +12,7 @@ from modelgen.diagnosis.experiment import STEM, Experiment, differences
 from modelgen.diagnosis.result import Diagnosis
 from modelgen.excitation.writing import set_points, trajectory
 from modelgen.report.page import block
-from modelgen.report.words import at, joint_names
+from modelgen.report.words import at
 
 NAMES = (f"{STEM}.csv", f"{STEM}_set_points.csv", f"{STEM}.svg")
 _LINES = 7  # looks of lines that are told apart
@@ -58,10 +58,10 @@ def charts(arm: Arm, e: Experiment) -> list[Chart]:
     if e.proposal is None:
         return []
     made, rows = e.proposal.excitation, e.proposal.rows
-    names = joint_names(arm)
+    names = arm.coordinate_names
     q = made.signals["q"]
     positions = [Curve(made.t, q[:, k], f"s{k % _LINES}", name) for k, name in enumerate(names)]
-    units = dict.fromkeys("m" if arm.joints[i].type == "prismatic" else "rad" for i in arm.coordinates)
+    units = dict.fromkeys(arm.coordinate_units)
     found = [
         Chart(
             "the trajectory",

@@ -15,7 +15,7 @@ from modelgen.identification.without_drives import Alternative
 from modelgen.numeric import Array
 from modelgen.report.arm_drawing import arm_drawing
 from modelgen.report.page import Block, Command, Folded, Grid, Lines, Text, block, page, pictured
-from modelgen.report.words import joint_names, listed, sentence
+from modelgen.report.words import listed, sentence
 
 AS_DESCRIBED = "the arm as described"
 _WIDE = 1.96  # standard deviations of a 95 % interval
@@ -60,7 +60,7 @@ def report(
 ) -> str:
     """HTML that needs nothing beside it. words: the verdict."""
     arm, test = found.arm, found.test
-    names = joint_names(arm)
+    names = arm.coordinate_names
     errors: list[Any] = [Text("There is no test record: nothing says how well the model predicts.")]
     if test is not None:
         heads = [("model", "left"), *((f"{n} [{u}]", "right") for n, u in zip(names, test.unit, strict=True))]
@@ -113,7 +113,7 @@ def _uncertain(found: Identification) -> list[Any]:
         for k, e in poor:
             j = test.shown_by(k)
             size, share = test.in_effort(k, e.std or 0.0)
-            where = "" if j is None else joint_names(found.arm)[j]
+            where = "" if j is None else found.arm.coordinate_names[j]
             unit = "" if j is None else test.unit[j]
             value = f"{number(e.value)} ± {number(e.std or 0.0, 2)} {e.unit}"
             rows.append((e.name, value, f"± {number(size, 2)} {unit}", f"{share:.1f} % at {where}"))

@@ -12,7 +12,6 @@ from modelgen.diagnosis.result import Diagnosis
 from modelgen.effects import CATALOGUE
 from modelgen.numeric import Array
 from modelgen.report.diagnosis_figures import HELD, against, binned, bins_of, measured_efforts, units_of
-from modelgen.report.words import joint_names
 
 _SAMPLES = 500  # of the residuals that are drawn
 _GROUPS = 80  # of samples, through whose means a law is drawn
@@ -61,7 +60,7 @@ def law_charts(d: Diagnosis, k: int) -> list[Chart]:
     if not law.size or not m.any():
         return []
     best = _abscissa(d, k, j)
-    name, unit = joint_names(d.arm)[j], units_of(d)[j]
+    name, unit = d.arm.coordinate_names[j], units_of(d)[j]
     against_motion = "" if (best.side > 0).all() else " against the motion"
     x_label, bins = f"{best.name} [{best.unit}]", bins_of(best.name)
     turned = best.side if np.mean(law[m, j] * best.side) >= 0.0 or not against_motion else -best.side

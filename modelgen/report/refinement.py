@@ -10,7 +10,7 @@ from modelgen.charts import Chart, Curve, number, sheet
 from modelgen.identification.output_error.refine import Refinement
 from modelgen.numeric import Array
 from modelgen.report.page import Command, Grid, Parts, Text, block, page
-from modelgen.report.words import joint_names, listed
+from modelgen.report.words import listed
 
 _FAR = 2.0  # standard deviations
 
@@ -20,8 +20,8 @@ def motion(found: Refinement) -> list[Chart]:
     arm = found.plant.arm
     t, measured, simulated = _joined(found)
     charts = []
-    for j, name in enumerate(joint_names(arm)):
-        unit = "m" if arm.joints[arm.coordinates[j]].type == "prismatic" else "rad"
+    for j, name in enumerate(arm.coordinate_names):
+        unit = arm.coordinate_units[j]
         curves = [
             Curve(t, measured[:, j], "measured", "measured"),
             Curve(t, simulated[:, j], "after", "simulated, refined"),
@@ -42,8 +42,8 @@ def picture(found: Refinement) -> str:
 def report(found: Refinement) -> str:
     """HTML that needs nothing beside it."""
     arm = found.plant.arm
-    name, names = arm.name, joint_names(arm)
-    units = ["m" if arm.joints[i].type == "prismatic" else "rad" for i in arm.coordinates]
+    name, names = arm.name, arm.coordinate_names
+    units = arm.coordinate_units
     rows = [
         (
             joint,

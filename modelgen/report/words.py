@@ -47,12 +47,7 @@ def sized(value: float, unit: str, digits: int = 2) -> str:
 
 def joint_name(arm: Arm, number: int) -> str:
     """Name of a coordinate, which counts from 1."""
-    return arm.joints[arm.coordinates[number - 1]].name
-
-
-def joint_names(arm: Arm) -> list[str]:
-    """Names of the coordinates."""
-    return [arm.joints[i].name for i in arm.coordinates]
+    return arm.coordinate_names[number - 1]
 
 
 def place_of(arm: Arm, joint: int | None) -> str:
@@ -86,7 +81,7 @@ def sentence(clause: str) -> str:
 
 def by_name(arm: Arm, text: str) -> str:
     """A text of the diagnosis with its joints' names in place of their numbers."""
-    names = joint_names(arm)
+    names = arm.coordinate_names
 
     def name(found: re.Match[str]) -> str:
         k = int(found[1])

@@ -18,11 +18,6 @@ from modelgen.simulation.tables import input_names
 from modelgen.simulation.trajectory import Trajectory
 
 
-def units(p: Plant) -> list[str]:
-    """rad or m, joint by joint."""
-    return ["m" if p.arm.joints[i].type == "prismatic" else "rad" for i in p.arm.coordinates]
-
-
 def facts(p: Plant, found: Trajectory) -> dict[str, Any]:
     """Facts of a motion: where it ended, when it came to rest, what became of its energy."""
     moving = np.flatnonzero((found.dq != 0).any(axis=1))
@@ -72,7 +67,7 @@ def joint_scores(p: Plant, s: Scores) -> list[dict[str, Any]]:
             "rmse": number(s.rmse[k]),
             "unit": unit,
         }
-        for k, unit in enumerate(units(p))
+        for k, unit in enumerate(p.arm.coordinate_units)
     ]
 
 
@@ -99,7 +94,7 @@ def log_table(log: Mapping[str, Array]) -> str:
 def picture(p: Plant, t: Array, q: Array, dq: Array, measured: Array | None) -> str:
     """Position and speed of every joint over time, as SVG."""
     made, axes = figure(p.n, 2, (9.0, 1.7 * p.n + 0.3))
-    for k, (name, unit) in enumerate(zip(p.names, units(p), strict=True)):
+    for k, (name, unit) in enumerate(zip(p.names, p.arm.coordinate_units, strict=True)):
         if measured is not None:
             axes[k, 0].plot(t, measured[:, k], color="#999999", label="measured")
         axes[k, 0].plot(t, q[:, k], color=COLOURS[0], label="simulated")

@@ -44,7 +44,7 @@ class Plant:
     @property
     def names(self) -> list[str]:
         """Names of the joints that move."""
-        return [self.arm.joints[i].name for i in self.arm.coordinates]
+        return self.arm.coordinate_names
 
     @cached_property
     def strokes(self) -> tuple[Array, Array]:

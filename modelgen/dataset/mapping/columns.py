@@ -57,7 +57,7 @@ class MappedReader:
         document = foreign.document
         n = len(drives)
         if len(document.joints) != n:
-            joints = ", ".join(arm.joints[i].name for i in arm.coordinates)
+            joints = ", ".join(arm.coordinate_names)
             raise foreign.error(
                 f"found {len(document.joints)} joints, expected {n}, the coordinates of {arm.name}: {joints}",
                 ["joints"],
@@ -175,7 +175,7 @@ class MappedReader:
     def _joint(self, k: int, joint: JointModel) -> None:
         """The signals of one joint."""
         path: list[str | int] = ["joints", k]
-        coordinate = "m" if self.arm.joints[self.arm.coordinates[k]].type == "prismatic" else "rad"
+        coordinate = self.arm.coordinate_units[k]
         motor = joint.position.side == "motor"
         unit = self.drives[k].unit if motor else coordinate
         name = f"{'qm' if motor else 'q'}{k + 1}"

@@ -102,7 +102,7 @@ def _unit(prepared: Prepared, k: int, *, at_motor: bool) -> str:
     arm = prepared.record.arm
     if at_motor or arm is None:
         return "motor unit" if at_motor else "rad or m"
-    return "m" if arm.joints[arm.coordinates[k]].type == "prismatic" else "rad"
+    return arm.coordinate_units[k]
 
 
 def _joint(prepared: Prepared, k: int) -> str:

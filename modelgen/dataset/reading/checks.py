@@ -116,7 +116,7 @@ def check_range(
         low, high = given
         found = float(columns[:, k].min()), float(columns[:, k].max())
         excess, slack = max(low - found[0], found[1] - high), margin * (high - low)
-        unit = drive.unit if motor_side else ("m" if joint.type == "prismatic" else "rad")
+        unit = drive.unit if motor_side else joint.unit
         printed = "motor units" if unit == "unit" else unit
         shown = f"{name} runs from {found[0]:.6g} to {found[1]:.6g} {printed}"
         limits = f"joint {joint.name} from {low:.6g} to {high:.6g} {printed}"

@@ -122,9 +122,9 @@ def _true_instants(source: Source, table: Array) -> tuple[Array, list[str], floa
 
 def _of_arm(record: Record, arm: Arm) -> Record:
     """A record of the arm's coordinates. Raises InputError."""
-    expected = [arm.joints[i].name for i in arm.coordinates]
+    expected = arm.coordinate_names
     given = record.arm
-    found = None if given is None else [given.joints[i].name for i in given.coordinates]
+    found = None if given is None else given.coordinate_names
     if record.n != len(expected) or found not in (None, expected):
         here = f"{record.n} coordinates" + ("" if found is None else f" ({', '.join(found)})")
         raise InputError(

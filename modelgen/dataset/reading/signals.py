@@ -60,7 +60,7 @@ def find_signals(
         raise InputError(f"{file}: the column t [s] is missing{_near('t', names)}")
     beyond = [m[0] for name in names if (m := _SIGNAL.fullmatch(name)) and int(m[2]) > n]
     if beyond:
-        joints = ", ".join(arm.joints[i].name for i in arm.coordinates)
+        joints = ", ".join(arm.coordinate_names)
         raise InputError(
             f"{file}: found the column {beyond[0]}, but {arm.name} has {n} coordinates ({joints}); "
             "locked and fixed joints are not counted"

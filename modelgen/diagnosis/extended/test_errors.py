@@ -43,7 +43,7 @@ def motion_errors(
     found = np.full((n, 5), np.nan)
     interval = np.nan, np.nan
     joints = [] if record.arm is None else [record.arm.joints[i] for i in record.arm.coordinates]
-    unit = ", ".join(dict.fromkeys("m" if j.type == "prismatic" else "rad" for j in joints)) or "rad"
+    unit = ", ".join(dict.fromkeys(j.unit for j in joints)) or "rad"
     if before is not None and after is not None and before.simulated.shape == after.simulated.shape:
         old, new = ((s.simulated - s.measured).reshape(-1, n) for s in (before, after))
         found = np.array([compared(old[:, j], new[:, j], limits) for j in range(n)])

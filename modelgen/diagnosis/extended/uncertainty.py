@@ -147,7 +147,7 @@ def _units(arm: Arm, effect: str, joint: int | None) -> dict[str, str]:
     if joint is not None:
         described = arm.joints[arm.coordinates[joint - 1]]
         drive = of_joint(arm, described)
-        coordinate = "m" if described.type == "prismatic" else "rad"
+        coordinate = described.unit
         if CATALOGUE[effect].side == "motor" and drive.driven:
             coordinate = drive.unit
     return {p.name: unit_of(p.unit, coordinate) for p in CATALOGUE[effect].accepted()}

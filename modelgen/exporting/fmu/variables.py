@@ -36,7 +36,7 @@ def variables(
     arm = plant.arm
     joints = [arm.joints[i] for i in arm.coordinates]
     drives = drives_of(arm)
-    own = ["m" if joint.type == "prismatic" else "rad" for joint in joints]
+    own = arm.coordinate_units
     efforts = ["N" if joint.type == "prismatic" else "N m" for joint in joints]
     found = [
         Variable(
