@@ -202,6 +202,14 @@ def _runge_kutta(arm: ControlledArm, h: float) -> ca.Function:
     x, u, theta = ca.MX.sym("x", 2 * n), ca.MX.sym("u", n), ca.MX.sym("parameters", arm.parameters.size)
     forward = _constant_parameters(arm.functions["forward_dynamics"])
 
+    reached = after_step(forward, x, u, theta, h)
+    return ca.Function("runge_kutta", [x, u, theta], [reached], {"is_diff_in": [True, True, False]})
+
+
+def after_step(forward: ca.Function, x: ca.MX, u: ca.MX, theta: ca.MX, h: float) -> ca.MX:
+    """The state (2 n,) that is reached from x after one step h [s] of Runge-Kutta 4."""
+    n = x.numel() // 2
+
     def slope(state: ca.MX) -> ca.MX:
         return ca.vertcat(state[n:], forward(state[:n], state[n:], u, theta))
 
@@ -209,8 +217,7 @@ def _runge_kutta(arm: ControlledArm, h: float) -> ca.Function:
     b = slope(x + h / 2 * a)
     c = slope(x + h / 2 * b)
     d = slope(x + h * c)
-    reached = x + h / 6 * (a + 2 * b + 2 * c + d)
-    return ca.Function("runge_kutta", [x, u, theta], [reached], {"is_diff_in": [True, True, False]})
+    return x + h / 6 * (a + 2 * b + 2 * c + d)
 
 
 def _constant_parameters(function: ca.Function) -> ca.Function:

@@ -15,6 +15,7 @@ from typing import Any
 import casadi as ca
 import numpy as np
 from mpc_arm import imported
+from mpc_horizon import after_step
 
 GENERATED = Path(__file__).resolve().parents[2] / "generated"
 ARMS = ("ariane4", "yaw3pitch", "ur10e", "iiwa14")
@@ -26,15 +27,7 @@ def sensitivities(dynamics: ca.Function) -> ca.Function:
     """(x, u, parameters) -> the state after a step of Runge-Kutta 4, and its Jacobian by x and by u."""
     n = dynamics.numel_out(0)
     x, u, p = ca.MX.sym("x", 2 * n), ca.MX.sym("u", n), ca.MX.sym("p", dynamics.size1_in(3))
-
-    def slope(state: ca.MX) -> ca.MX:
-        return ca.vertcat(state[n:], dynamics(state[:n], state[n:], u, p))
-
-    a = slope(x)
-    b = slope(x + STEP / 2 * a)
-    c = slope(x + STEP / 2 * b)
-    d = slope(x + STEP * c)
-    reached = x + STEP / 6 * (a + 2 * b + 2 * c + d)
+    reached = after_step(dynamics, x, u, p, STEP)
     outputs = [reached, ca.jacobian(reached, x), ca.jacobian(reached, u)]
     return ca.Function("sensitivities", [x, u, p], outputs)
 

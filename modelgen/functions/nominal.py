@@ -28,11 +28,7 @@ def nominal_values(arm: Arm, standard: Sequence[StandardParameter]) -> dict[str,
     (Huygens, Steiner) moves the tensor there. Raises InputError for a link without nominal inertials,
     for an effect without a nominal value, and for an arm in a fluid, whose volumes have none.
     """
-    values = nominal_links(arm)
-    for effect in applied_effects(arm):
-        for parameter, symbol in effect.parameters:
-            if parameter.name in effect.nominal:
-                values[symbol.name] = effect.nominal[parameter.name]
+    values = nominal_links(arm) | _of_effects(arm)
     for p in standard:
         if p.name not in values:
             raise InputError(
@@ -49,12 +45,30 @@ def is_nominal(arm: Arm) -> bool:
 
 def nominal_links(arm: Arm) -> dict[str, float]:
     """Nominal standard parameters of the links alone, by name. Raises InputError where a link has none."""
-    values: dict[str, float] = {}
     for i, link in enumerate(arm.links):
         if link is None:
             raise InputError(f"{arm.name}: link {arm.joints[i].name} has no nominal inertials", arm.where)
-        values |= {f"{name}{i + 1}": value for name, value in about_origin(link).items()}
-    return values
+    return _of_links(arm)
+
+
+def _of_links(arm: Arm) -> dict[str, float]:
+    """Standard parameters, by name, of the links that have nominal inertials."""
+    return {
+        f"{name}{i + 1}": value
+        for i, link in enumerate(arm.links)
+        if link is not None
+        for name, value in about_origin(link).items()
+    }
+
+
+def _of_effects(arm: Arm) -> dict[str, float]:
+    """Standard parameters, by name, of the effects that have nominal values."""
+    return {
+        symbol.name: effect.nominal[parameter.name]
+        for effect in applied_effects(arm)
+        for parameter, symbol in effect.parameters
+        if parameter.name in effect.nominal
+    }
 
 
 def nominal_base(model: Model) -> dict[str, float]:
@@ -64,16 +78,7 @@ def nominal_base(model: Model) -> dict[str, float]:
 
 def known_base(model: Model) -> dict[str, float]:
     """Nominal base parameters by name, of those alone to which the description gives every part."""
-    values = {
-        f"{name}{i + 1}": value
-        for i, link in enumerate(model.arm.links)
-        if link is not None
-        for name, value in about_origin(link).items()
-    }
-    for effect in applied_effects(model.arm):
-        for parameter, symbol in effect.parameters:
-            if parameter.name in effect.nominal:
-                values[symbol.name] = effect.nominal[parameter.name]
+    values = _of_links(model.arm) | _of_effects(model.arm)
     found = grouped(model, [values.get(p.name, np.nan) for p in model.standard])
     return {name: value for name, value in found.items() if np.isfinite(value)}
 
