@@ -46,29 +46,28 @@ PACKAGES = (
     "fleet",
     "jobs",
 )
+# What index.md says of the pages that are made here.
+REFERENCE = "every command and every function (`make docs` builds these pages)"
+# The reader's way first, in its order.
 GUIDES = {
-    "Start": [
+    "The way": [
+        "install",
         "tutorial",
         "from-a-drawing",
         "from-a-urdf",
-        "importing",
-        "imported-robots",
-        "drawing",
-        "exporting",
-        "python",
-        "theory",
-    ],
-    "Generated code": ["firmware", "packaging", "mpc", "safety", "sizes"],
-    "From logs to parameters": ["logs", "excitation", "calibration", "identification", "simulation"],
-    "What a model lacks": [
+        "logs",
+        "identification",
         "diagnosing",
-        "effects",
-        "fleet",
-        "case-studies",
-        "diagnosis_method",
-        "thresholds",
+        "firmware",
+        "mpc",
+        "python",
     ],
-    "Working on modelgen": ["architecture", "glossary"],
+    "Seen on real arms": ["case-studies"],
+    "The arm": ["describing", "importing", "drawing", "calibration", "exporting"],
+    "Motions": ["excitation", "simulation", "fleet"],
+    "The code": ["packaging", "safety"],
+    "What is measured": ["diagnosis", "benchmarks", "sizes", "imported-robots"],
+    "How it works": ["effects", "diagnosis_method", "thresholds", "theory", "architecture", "glossary"],
 }
 
 
@@ -122,7 +121,9 @@ def gather(folder: Path) -> None:
         "Reference": [f"reference/{name}" for name in ("face", "command_line", *PACKAGES)],
     }
     index = folder / "index.md"
-    index.write_text(index.read_text("utf-8") + "".join(_tree(k, v) for k, v in trees.items() if v), "utf-8")
+    made = "[every command](reference/command_line.md) and [every function](reference/face.md)"
+    text = index.read_text("utf-8").replace(REFERENCE, made)
+    index.write_text(text + "".join(_tree(k, v) for k, v in trees.items() if v), "utf-8")
 
 
 def reference(package: str) -> str:

@@ -16,14 +16,14 @@ changes, in per cent of the instructions per call (in brackets: of the operation
 worse. Three bench arms ({arms}), parameters folded in, x86-64-v3.
 """
 _KEPT = """\
-Kept, and so in every figure above: own sine and cosine behind one shared function; common factors taken out or not,
+Kept, and so in every figure above: own sine and cosine behind one shared function; common factors factored out or not,
 whichever takes fewer operations for a function (the sine and cosine of a sum of parallel axes' angles come from it);
 the search over the regressor's plans, where one sweep found as much as all of them; its columns one after the other,
 each stored as soon as it is known; pivots computed and tested first; one straight line for forward dynamics instead of
 calls.
 
 Not kept: a division for every entry saves up to 3 % of the instructions, but has n (n - 1) / 2 divisions more, 14
-cycles each on a Cortex-M4F. Sine and cosine inlined save up to 11 %, but stand in every function once for each joint
+cycles each on a Cortex-M4F. Sine and cosine inlined save up to 11 %, but occur in every function once for each joint
 (266 bytes on x86); a header of one's own can have it so (`-D<ARM>_SINCOS`). Other orders of operands change the figures
 by what the compiler's allocation of registers makes of them, up or down by 4 %, and differently for every arm: to
 choose the best one by counting would tie the code to one compiler. Articulated bodies in place of

@@ -182,7 +182,7 @@ _MASS = Dynamics.mass_matrix
 
 SHIPPED = Variant("", "as shipped")
 VARIANTS = (
-    Variant("forms", "plain frames only, no common factors taken out", _only(False)),
+    Variant("forms", "plain frames only, no common factors factored out", _only(False)),
     Variant("forms", "factored frames only (sums of parallel axes' angles by identity)", _only(True)),
     Variant(
         "forms",

@@ -105,6 +105,18 @@ def test_bam_is_a_pendulum_of_the_described_mass_under_a_voltage() -> None:
     assert all(r.temperature is not None and 27 < r.temperature.mean() < 40 for r in records)
 
 
+def test_ur10_is_read_from_its_bag() -> None:
+    found = record("ur10", "ur10_unisa/ur10_exciting_trajectory.db3@0:20")
+    assert len(found.t) == 2501
+    assert 1 / found.step == pytest.approx(125.0, rel=1e-3)
+    assert found.effort_unit == ("A",) * 6
+    # The maker's masses of links 2 to 6 and the centre of link 2 (Universal Robots, "Parameters for
+    # calculations of kinematics and dynamics"): 12.7 kg at 0.612 - 0.38 m, and 8.635 kg at the elbow. x of
+    # the shoulder points away from the elbow.
+    values, _ = fitted([found], 8.0)
+    assert values["MX2R"] == pytest.approx(-(12.7 * (0.612 - 0.38) + 8.635 * 0.612), rel=0.05)
+
+
 def test_laas_logs_are_resampled() -> None:
     slow = record("laas", "laas_cogging/laas_stopped.csv", "laas_slow")
     assert slow.step == pytest.approx(0.1)

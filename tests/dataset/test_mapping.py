@@ -241,7 +241,7 @@ def test_a_formula_is_nothing_else(text: str) -> None:
 def test_the_schema_accepts_the_case_studies_and_refuses_a_misspelt_key(checkout: Path) -> None:
     schema = mapping_json_schema()
     files = sorted((checkout / "examples" / "case_studies").glob("*_mapping.yaml"))
-    assert len(files) == 6
+    assert len(files) == 7
     for file in files:
         document = parse(file.read_text(encoding="utf-8"), str(file)).plain()
         jsonschema.validate(document, schema)

@@ -6,6 +6,7 @@ Skipped where the logs are absent.
 from __future__ import annotations
 
 import json
+import re
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
@@ -77,6 +78,18 @@ def test_double_pendulum_lacks_nothing(tmp_path: Path) -> None:
     found = diagnosis(tmp_path, "dfki", "double_pendulum", runs[:6], runs[6], "--cutoff", "6")
     assert found["causes"] == []
     assert found["verdict"] in ("nothing_missing", "cannot_tell")
+
+
+def test_ur10_as_described_has_the_errors_of_the_page(tmp_path: Path) -> None:
+    log = str(DATA / "ur10_unisa/ur10_exciting_trajectory.db3")
+    call = ["identify", str(STUDIES / "ur10_arm.yaml"), "--mapping", str(STUDIES / "ur10_mapping.yaml")]
+    call += ["--train", f"{log}@0:20", "--test", f"{log}@20:27.5", "--cutoff", "8", "--out", str(tmp_path)]
+    result = CliRunner().invoke(app, call)
+    assert result.exit_code == 0, result.output
+    found = json.loads((tmp_path / "identification.json").read_text(encoding="utf-8"))
+    page = (ROOT / "docs" / "case-studies.md").read_text(encoding="utf-8")
+    (row,) = re.findall(r"^\| as described \| 8 Hz \| (.*) \|$", page, re.MULTILINE)
+    assert [f"{x:.3f}" for x in found["test"]["rmse"]] == row.split(" | ")
 
 
 def test_tx40_lacks_its_coupling_and_friction_by_load_and_by_a_power_of_the_speed(tmp_path: Path) -> None:

@@ -25,9 +25,14 @@ def texts(source: str) -> Iterator[tuple[int, str]]:
             yield node.lineno, node.value
 
 
-def test_messages_and_pages_have_the_words_of_the_glossary(checkout: Path) -> None:
+def terms_of(checkout: Path) -> set[str]:
+    """What the glossary explains, in small letters."""
     glossary = (checkout / "docs" / "glossary.md").read_text(encoding="utf-8")
-    terms = {term.lower() for term in re.findall(r"^\*\*(.+?)\.\*\*", glossary, re.MULTILINE)}
+    return {term.lower() for term in re.findall(r"^\*\*(.+?)\.\*\*", glossary, re.MULTILINE)}
+
+
+def test_messages_and_pages_have_the_words_of_the_glossary(checkout: Path) -> None:
+    terms = terms_of(checkout)
     found = []
     for path in sorted((checkout / "modelgen").rglob("*.py")):
         for line, text in texts(path.read_text(encoding="utf-8")):
@@ -39,6 +44,25 @@ def test_messages_and_pages_have_the_words_of_the_glossary(checkout: Path) -> No
     for path in sorted((checkout / "templates" / "report").iterdir()):
         shown = re.sub(r"\{[%{#].*?[%}#]\}|<[^>]*>", " ", path.read_text(encoding="utf-8"))
         found += [f"{path.name}: '{word}'" for word in WORDS.findall(shown)]
+    assert not found, "\n".join(found)
+
+
+def test_the_documentation_has_the_words_of_the_glossary(checkout: Path) -> None:
+    terms = terms_of(checkout)
+    found = []
+    for path in [
+        *checkout.glob("*.md"),
+        *(checkout / "docs").rglob("*.md"),
+        *checkout.glob("examples/*/*.md"),
+    ]:
+        text = path.read_text(encoding="utf-8")
+        prose = re.sub(r"```.*?```|`[^`\n]*`", lambda m: "\n" * m[0].count("\n"), text, flags=re.DOTALL)
+        found += [
+            f"{path.relative_to(checkout)}:{number}: '{word}'"
+            for number, line in enumerate(prose.splitlines(), 1)
+            for word in WORDS.findall(line)
+            if word.lower().removesuffix("s") not in terms
+        ]
     assert not found, "\n".join(found)
 
 

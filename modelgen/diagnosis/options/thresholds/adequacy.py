@@ -10,7 +10,7 @@ from modelgen.thresholds import Group, entry
 
 @dataclass(frozen=True)
 class AdequacyThresholds(Group):
-    """What decides whether the causes explain what repeats, and whether they stand in for something else."""
+    """What decides whether causes explain what repeats, and whether they merely resemble something else."""
 
     lack_of_fit_significance: float = entry(
         1e-3, "probability", "Chance of a false alarm of the tests of one kind, all joints together.", JUDGED

@@ -1,0 +1,65 @@
+"""Pictures that scripts of the documentation draw: of today's data, and legible by day and by night."""
+
+from __future__ import annotations
+
+import importlib.util
+import re
+from pathlib import Path
+from types import ModuleType
+from xml.etree import ElementTree
+
+import pytest
+
+DOCS = Path(__file__).resolve().parents[2] / "docs"
+NAMES = sorted(path.name for path in (DOCS / "case-studies").glob("*.svg"))
+
+
+def script(name: str) -> ModuleType:
+    spec = importlib.util.spec_from_file_location(name, DOCS / f"{name}.py")
+    assert spec is not None
+    assert spec.loader is not None
+    module = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    return module
+
+
+def contrast(one: str, other: str) -> float:
+    """Ratio of the luminances of two colours (WCAG 2.1)."""
+
+    def luminance(colour: str) -> float:
+        parts = [int(colour[k : k + 2], 16) / 255 for k in (1, 3, 5)]
+        r, g, b = (x / 12.92 if x <= 0.04045 else ((x + 0.055) / 1.055) ** 2.4 for x in parts)
+        return 0.2126 * r + 0.7152 * g + 0.0722 * b
+
+    high, low = sorted((luminance(one), luminance(other)), reverse=True)
+    return (high + 0.05) / (low + 0.05)
+
+
+def test_the_picture_of_the_loop_is_that_of_the_example() -> None:
+    assert script("loop").picture() == (DOCS / "loop.svg").read_text(encoding="utf-8")
+
+
+def test_the_picture_of_the_loop_is_legible_on_any_page() -> None:
+    """It lies on a ground of its own, from edge to edge, and its text stands out from that."""
+    picture = ElementTree.fromstring((DOCS / "loop.svg").read_text(encoding="utf-8"))
+    ns = "{http://www.w3.org/2000/svg}"
+    ground = next(r for r in picture.iter(f"{ns}rect"))
+    assert [ground.get("width"), ground.get("height")] == (picture.get("viewBox") or "").split()[2:]
+    texts = list(picture.iter(f"{ns}text"))
+    assert {"arm", "log", "cause", "code"} <= {t.text for t in texts}
+    for text in texts:
+        for paper in ("#ffffff", ground.get("fill") or ""):
+            assert contrast(text.get("fill") or "", paper) > 4.5, text.text
+
+
+def test_the_bars_of_the_ur10_are_those_of_its_table() -> None:
+    assert script("case_studies").ur10() == (DOCS / "case-studies" / "ur10.svg").read_text(encoding="utf-8")
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_pictures_of_the_case_studies_have_day_and_night(name: str) -> None:
+    text = (DOCS / "case-studies" / name).read_text(encoding="utf-8")
+    ElementTree.fromstring(text)
+    assert "prefers-color-scheme: dark" in text
+    assert re.search(r'<rect class="paper" width="\d+" height="\d+"/>', text)
+    assert name in (DOCS / "case-studies.md").read_text(encoding="utf-8")
