@@ -147,12 +147,13 @@ def page(robots: Sequence[Row], models: Sequence[Row], package: str) -> str:
     worst = max((row.off for row in [*robots, *models]), default=0.0)
     taken = [row for row in robots if row.figures is not None]
     about = (
+        "*Is a robot like mine among those that have been imported, and how large is its model?* "
         f"Every URDF of the PyPI package `example-robot-data` {package}, {len(robots)} files, and models of "
-        "MJCF with joints and settings of every kind, [imported](importing.md) and held against Pinocchio "
-        f"{pinocchio.__version__} and MuJoCo {mujoco.__version__}, which read the source itself, at "
-        f"{importing_support.SAMPLES} states: efforts of inverse dynamics, mass matrix and the pose of every "
-        f"link. The largest difference of all is {worst:.0e}, relative to the largest value. What walks or "
-        "flies stands on its root link. `make bench-robots` writes this page."
+        "MJCF with joints and settings of every kind, were [imported](importing.md) and compared with "
+        f"Pinocchio {pinocchio.__version__} and MuJoCo {mujoco.__version__}, which read the source itself, "
+        f"at {importing_support.SAMPLES} states: efforts of inverse dynamics, mass matrix and the pose of "
+        f"every link. The largest difference of all is {worst:.0e}, relative to the largest value. What "
+        "walks or flies is fixed at its root link. `make bench-robots` writes this page."
     )
     columns = (
         "Operations are multiplications, additions and negations of `inverse_dynamics`; held are joints that "

@@ -64,6 +64,8 @@ def document(tables: Mapping[str, Table]) -> str:
     lines = [
         "# Sizes on a Cortex-M4F",
         "",
+        "*How much flash, stack and time does a function take on a microcontroller?*",
+        "",
         "Written by `python benchmarks/size.py --accept`; [firmware.md](firmware.md#sizes) says what the "
         "figures mean. Single precision, flags of [firmware.md](firmware.md#flags). Flash and stack in "
         "bytes; `_identified`: parameters folded in.",

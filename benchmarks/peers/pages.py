@@ -13,9 +13,14 @@ from peers.tables import FUNCTIONS, counts, operations, overview, table, times
 _HEAD = """\
 # Beside other tools
 
-Written by `make bench`. Rigid links without drives and effects, the same 200 random states for everyone, results
-compared to 1e-9 before anything is measured (regressors by the efforts that they give). x86-64-v3, `-O3`, double
-precision, parameters folded in where the tool can. modelgen's figures hold its checks of the inputs.
+*How fast is the generated code beside that of other tools?* The table below has the answer for eleven arms together; further down is every
+arm by itself, then generation, memory, regressors over many states, control, variants, and growth with the joints.
+"""
+_HOW = """## How it is measured
+
+`make bench` measures and writes this page. The links are rigid, without drives and effects. Everyone gets the same 200 random states, and results
+are compared to 1e-9 before anything is measured (regressors by the efforts that they give). The code is compiled for x86-64-v3 with `-O3`, in double
+precision, with parameters folded in where the tool can do that. modelgen's figures contain its checks of the inputs.
 
 - **operations**: multiplications + additions + negations as written, before the compiler; divisions after the
   comma; trigonometry apart.
@@ -42,10 +47,9 @@ modelgen and the figures of [sizes.md](sizes.md) (Cortex-M4F) share the same C.
 def document(result: dict[str, Any], folder: Path) -> str:
     """docs/benchmarks.md. `folder` holds the results of control.py, variants.py and scale.py, where they have been written."""
     versions = ", ".join(f"{name} {version}" for name, version in result["versions"].items())
-    lines = [_HEAD, f"Measured with {versions}."]
     arms = result["arms"]
-    lines += ["", "![instructions relative to modelgen](benchmarks.svg)", "", "## Overview", ""]
-    lines += overview(arms)
+    lines = [_HEAD, "![instructions relative to modelgen](benchmarks.svg)", "", "## Overview", ""]
+    lines += [*overview(arms), "", _HOW, f"Measured with {versions}."]
     for arm, peers in arms.items():
         lines += ["", f"## {arm}", "", "Operations.", "", *table(peers, operations)]
         lines += ["", "Instructions (ratio to modelgen).", "", *table(peers, counts)]

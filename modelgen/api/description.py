@@ -15,7 +15,7 @@ def load_arms(path: Path | str | None = None) -> dict[str, Arm]:
     Parameters
     ----------
     path : Path or str, optional
-        A description in YAML (docs/index.md). Default: arms.yaml in the current folder where there is one,
+        A description in YAML (docs/describing.md). Default: arms.yaml in the current folder if there is one,
         else the arms that modelgen ships.
 
     Returns

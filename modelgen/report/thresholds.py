@@ -14,16 +14,16 @@ from modelgen.thresholds import Group, Value
 
 _HEAD = """# Thresholds
 
-Every number on which a decision of the diagnosis depends, and every number by which a log is refused or its
-processing chosen. [How a cause is named](diagnosis_method.md) says what they are for. A caller passes other
-values by name:
+*Which numbers decide, where do they come from, and how do I set another one?* Here is every number on which a
+decision of the diagnosis depends, and every number by which a log is refused or its processing chosen.
+[How a cause is named](diagnosis_method.md) says what they are for. A caller passes other values by name:
 
 ```python
 mg.diagnose(arm, train=["a.csv", "b.csv"], test="c.csv", thresholds={"selection.min_delta_bic": 10.0})
 ```
 
 `settings.thresholds` of diagnosis.json lists the values that are not the usual ones. Numbers that set how
-finely something is computed, as steps of a search do, are not thresholds and stand beside the code that uses
+finely something is computed, as steps of a search do, are no thresholds. They are beside the code that uses
 them. This page is written by `python -m modelgen.report.thresholds`.
 """
 

@@ -13,12 +13,18 @@ SHOWN = 25.0  # twice a log likelihood: evidence of 6 and the price of two param
 HEAD = """\
 # Diagnosis: measured
 
-What `modelgen diagnose` answers on logs of simulated arms with something hidden in them. Written by
-`make blind`; the method is in [diagnosis_method.md](diagnosis_method.md).
+*How often is the diagnosis right, and how often does it name something that is not there?*
+`modelgen diagnose` was asked about logs of simulated arms with something hidden in them, and of arms with
+nothing hidden. In brackets: 95 % Wilson intervals, in %. The strength s is the error of the standard model
+with the effect over the error without it.
+"""
+HOW = """\
+## How it is measured
 
 Seed {seed}, commit {commit}. {runs}
 A case is undrawn where the effect reaches the strength on no plausible arm of the draw. Every case with its
-answer: `tests/hidden/runs/{seed}.jsonl`.
+answer: `tests/hidden/runs/{seed}.jsonl`. `make blind` writes this page; the method is in
+[diagnosis_method.md](diagnosis_method.md).
 
 The plant shares no code with modelgen (`tests/hidden`): other functional forms of the effects, another
 integrator (Moreau's midpoint stepping with set-valued friction), arms of 2 to 6 joints with direct and
@@ -30,7 +36,7 @@ in its turn (two records for training, whatever their number below); of an effec
 what a spring and a constant current at each joint leave. A fit to few motions can take up what then costs 5 %
 on another: shown in the training records is an effect by which twice the log likelihood of the plant's own
 fit to them is expected to fall by {shown:g}, with the noise's colour known, which a cause with two parameters
-needs for its name. In brackets: 95 % Wilson intervals, in %.
+needs for its name.
 """
 PICTURES = (
     "",
@@ -68,13 +74,13 @@ def write(lines: list[Line], docs: Path, planned: int) -> None:
     docs.mkdir(parents=True, exist_ok=True)
     confusion(first, docs / "diagnosis_confusion.svg")
     power(runs, docs / "diagnosis_power.svg")
-    head = HEAD.format(
+    how = HOW.format(
         seed=" and ".join(sorted({str(line["seed"]) for line in lines})),
         commit=" and ".join(sorted({line["commit"] for line in lines})),
         runs="\n".join(_stated(count, own, planned) for count, own in runs.items()),
         shown=SHOWN,
     )
-    page = [head, *_table(runs), *PICTURES, *_by_effect(first), *_failures(lines)]
+    page = [HEAD, *_table(runs), *PICTURES, how, *_by_effect(first), *_failures(lines)]
     (docs / "diagnosis.md").write_text("\n".join(page) + "\n", encoding="utf-8")
 
 
