@@ -110,7 +110,7 @@ class Traits(ABC):
         description lacks one of them, what is constant in this law comes first (marginality, Nelder 1977).
     series: its law is the first terms of a series in the joint's position; another function of the position
         and the direction is the same cause.
-    claims: names of parameters without which it would not be there; their values are above zero.
+    claims: names of parameters without which it would not be there, see `above_zero`.
     """
 
     name: ClassVar[str]
@@ -277,6 +277,15 @@ class Traits(ABC):
     def impossible(cls, arm: Arm, number: int | None, values: Numbers) -> str:
         """Why no arm has it with these values, a clause; empty where nothing speaks against them."""
         return ""
+
+    @classmethod
+    def above_zero(cls, arm: Arm, values: Numbers, spread: Numbers) -> float:
+        """Standard deviations by which what it claims is above zero, the least of all; inf where nothing is.
+
+        values, spread: of what is estimated of it, with its standard deviations, by name.
+        """
+        found = (values[name] / max(spread[name], 1e-300) for name in cls.claims if name in values)
+        return min(found, default=math.inf)
 
     @classmethod
     def usual(cls, arm: Arm, number: int | None) -> Mapping[str, float]:

@@ -264,7 +264,8 @@ def claimed(limits: Thresholds) -> Any:
     equations = known(limits)
     trial = law(equations, constant, "payload_change")
     trial = replace(trial, candidate=replace(trial.candidate, part=("mass",)))
-    return significant(0, selected(equations, trial)).passed
+    described = replace(equations, evaluator=SimpleNamespace(arm=ARM))
+    return significant(0, selected(equations, trial), described).passed
 
 
 def stable(limits: Thresholds) -> Any:

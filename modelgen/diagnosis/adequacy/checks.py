@@ -43,7 +43,7 @@ def examined(selection: Selection, equations: Equations) -> list[Examined]:
             cause,
             (
                 _evidence(cause, selection),
-                significant(k, selection),
+                significant(k, selection, equations),
                 admissible(cause, equations),
                 _gain(cause, equations),
                 _undominated(dominance(cause, selection)),
@@ -105,8 +105,11 @@ def _evidence(cause: Cause, selection: Selection) -> Check:
     return Check("evidence", cause.delta_bic >= least, True, cause.delta_bic, least, text)
 
 
-def significant(k: int, selection: Selection) -> Check:
-    """Whether what an effect claims is not zero: asked of parameters without which it would not be there."""
+def significant(k: int, selection: Selection, equations: Equations) -> Check:
+    """Whether what an effect claims is not zero: asked of parameters without which it would not be there.
+
+    k: number of the cause. equations: of the band.
+    """
     cause = selection.causes[k]
     least = selection.system.equations.thresholds.adequacy.min_claimed_deviations
     c = cause.trial.candidate
@@ -114,8 +117,7 @@ def significant(k: int, selection: Selection) -> Check:
     if not claims:
         text = "its evidence is that of all its parameters together"
         return Check("significant", True, True, float("nan"), float("nan"), text)
-    values, spread = _estimated(k, selection)
-    found = min(values[name] / max(spread[name], 1e-300) for name in claims)
+    found = c.definition.above_zero(equations.arm, *_estimated(k, selection))
     text = f"standard deviations that its {' and '.join(claims)} is above zero"
     return Check("significant", found >= least, True, found, least, text)
 

@@ -14,6 +14,7 @@ from modelgen.effects.base import ANY, DescriptionEffect, LinkEffect, Parameter,
 from modelgen.effects.traits import Added, Family, Numbers, Presence, Reading, Seen
 from modelgen.effects.variables import PointVariables
 from modelgen.numeric import Array
+from modelgen.symbolic import number as value_of
 
 # Gauss-Legendre quadrature with five points on [0, 1]: (place, weight)
 _NODES = tuple(
@@ -26,6 +27,7 @@ _NODES = tuple(
         (1, 0.9061798459386640, 0.2369268850561891),
     )
 )
+MASS_DEVIATIONS = 3.0  # of a payload's mass, up to which it may be more than was found
 PLACE = 1e-3  # m, step of the slopes by a payload's place
 STILL = 1e-12  # [m^2/s^2] added under the root of a speed squared, so that its slope exists at rest
 TIP = tuple(
@@ -137,6 +139,25 @@ class PayloadChange(LinkEffect):
         return "mass", "moment_x", "moment_y", "moment_z"
 
     @classmethod
+    def above_zero(cls, arm: Arm, values: Numbers, spread: Numbers) -> float:
+        """Of the mass, or of the first moments where a mass within three deviations of the estimate has them
+        in reach: slow motions show moments well and the mass itself little.
+        """
+        mass, own = values["mass"], spread["mass"]
+        moments = {name: values[name] for name in cls.estimated()[1:] if name in values}
+        in_reach = math.hypot(*moments.values()) <= (mass + MASS_DEVIATIONS * own) * _reach(arm)
+        found = [abs(x) / max(spread[name], 1e-300) for name, x in moments.items() if in_reach and mass > 0.0]
+        return max([mass / max(own, 1e-300), *found])
+
+    @classmethod
+    def impossible(cls, arm: Arm, number: int | None, values: Numbers) -> str:
+        """The arm carries it: it is no farther from the last joint than the arm could reach."""
+        away, most = math.hypot(*(values.get(a, 0.0) for a in "xyz")), _reach(arm)
+        if not most or away <= most:
+            return ""
+        return f"a payload {away:.2g} m from the last joint is beyond the reach of an arm of {most / 2:.2g} m"
+
+    @classmethod
     def slopes(cls, names: Sequence[str], values: Numbers, added: Added) -> Array:
         """Changes of the inputs with mass and first moments of what the last link carries.
 
@@ -185,6 +206,14 @@ class PayloadChange(LinkEffect):
     def force(self, x: PointVariables, p: Values) -> sp.Matrix:
         """mass times acceleration less gravity."""
         return p["mass"] * x.acceleration
+
+
+def _reach(arm: Arm) -> float:
+    """Distance from the last joint within which a payload may be [m]: twice the arm's length up to there, for
+    a description ends at the last joint; any where that is 0.
+    """
+    lengths = [math.hypot(*(value_of(x, arm.symbols) for x in (j.d, j.r, j.b))) for j in arm.joints]
+    return 2.0 * sum(lengths)
 
 
 def _turn(axis: str) -> Parameter:
