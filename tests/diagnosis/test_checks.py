@@ -15,10 +15,10 @@ from modelgen.diagnosis.adequacy.checks import (
     admissible,
     confirmed,
     ended_by_suspects,
-    explained,
     significant,
 )
 from modelgen.diagnosis.adequacy.dominance import dominance
+from modelgen.diagnosis.adequacy.explained import explained
 from modelgen.diagnosis.candidates import Candidate, FittedCandidate, with_causes
 from modelgen.diagnosis.pipeline import diagnose
 from modelgen.diagnosis.result import to_json

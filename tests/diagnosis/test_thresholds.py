@@ -18,7 +18,7 @@ from threshold_support import Seen, band, known, law, logs, real, refusal, value
 
 from modelgen.description import Inertial
 from modelgen.diagnosis.adequacy import lack_of_fit
-from modelgen.diagnosis.adequacy.checks import explained
+from modelgen.diagnosis.adequacy.explained import explained
 from modelgen.diagnosis.adequacy.free_form import further_terms
 from modelgen.diagnosis.adequacy.lack_of_fit import in_parts
 from modelgen.diagnosis.adequacy.smooth_functions import smooth_functions

@@ -8,17 +8,14 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from modelgen.diagnosis.adequacy.dominance import Dominance, dominance
+from modelgen.diagnosis.adequacy.explained import explained
 from modelgen.diagnosis.adequacy.free_form import FreeForm, free_forms, further_terms
-from modelgen.diagnosis.adequacy.lack_of_fit import lack_of_fit, repeating
-from modelgen.diagnosis.adequacy.smooth_functions import Worth
 from modelgen.diagnosis.candidates import with_causes
 from modelgen.diagnosis.equations import Equations
-from modelgen.diagnosis.evidence import covariance, mean_squares
+from modelgen.diagnosis.evidence import covariance
 from modelgen.diagnosis.options.thresholds import in_band
-from modelgen.diagnosis.selection import Cause, Selection, needed_evidence
+from modelgen.diagnosis.selection import SUSPECT, Cause, Selection, needed_evidence
 from modelgen.diagnosis.validation import Check, agreement
-from modelgen.numeric import Array
-from modelgen.regression.weighted import moving_rows, rmse, weighted_fit
 
 
 @dataclass(frozen=True)
@@ -36,8 +33,6 @@ class Examined:
 
 def examined(selection: Selection, equations: Equations) -> list[Examined]:
     """Every cause of the selection with its checks. equations: of the band, all rows that move."""
-    terms = further_terms(selection)
-    forms, shares = free_forms(selection, equations, terms), explained(selection, terms)
     every = [
         Examined(
             cause,
@@ -47,14 +42,44 @@ def examined(selection: Selection, equations: Equations) -> list[Examined]:
                 admissible(cause, equations),
                 _gain(cause, equations),
                 _undominated(dominance(cause, selection)),
-                _form(forms.get(cause.trial.candidate.joint)),
-                shares[k],
+                *complete,
                 _stable(k, selection),
             ),
         )
-        for k, cause in enumerate(selection.causes)
+        for k, (cause, complete) in enumerate(
+            zip(selection.causes, _complete(selection, equations), strict=True)
+        )
     ]
-    return ended_by_suspects(every)
+    return of_those_that_stay(ended_by_suspects(every), selection, equations)
+
+
+def of_those_that_stay(
+    every: Sequence[Examined], selection: Selection, equations: Equations
+) -> list[Examined]:
+    """The same where causes that stay explain what is there without the suspects.
+
+    What a suspect explained nothing explains: `form` and `explains` are asked again of the others alone,
+    until none more becomes a suspect.
+    """
+    found = list(every)
+    while True:
+        staying = [k for k, e in enumerate(found) if not e.failed]
+        if len(staying) in (0, len(found)):
+            return found
+        kept = selection.without([e.cause for e in found if e.failed], SUSPECT)
+        for k, complete in zip(staying, _complete(kept, equations), strict=True):
+            again = {check.name: check for check in complete}
+            found[k] = replace(found[k], checks=tuple(again.get(c.name, c) for c in found[k].checks))
+        if not any(found[k].failed for k in staying):
+            return found
+
+
+def _complete(selection: Selection, equations: Equations) -> list[tuple[Check, Check]]:
+    """For every cause, whether those of its joints say all that is to say there: `form` and `explains`."""
+    terms = further_terms(selection)
+    forms, shares = free_forms(selection, equations, terms), explained(selection, terms)
+    own = (forms.get(c.trial.candidate.joint) for c in selection.causes)
+    return [(_form(form), share) for form, share in zip(own, shares, strict=True)]
 
 
 def ended_by_suspects(every: Sequence[Examined]) -> list[Examined]:
@@ -177,7 +202,7 @@ def _form(by: FreeForm | None) -> Check:
         text = "no function of position and speed does as well"
         return Check("form", True, True, float("nan"), float("nan"), text)
     text = "delta BIC by which a free function of the joint's position and speed is ahead"
-    return Check("form", not by.better, True, by.ahead, by.most, text)
+    return Check("form", not by.as_good, True, by.ahead, by.most, text)
 
 
 def _stable(k: int, selection: Selection) -> Check:
@@ -191,56 +216,3 @@ def _stable(k: int, selection: Selection) -> Check:
     found = agreement(parts, system.equations, columns, own) if len(parts) > 1 else float("nan")
     text = "probability of records that differ as much in its size where that is the same in all"
     return Check("stable", None if np.isnan(found) else found >= least, False, found, least, text)
-
-
-def explained(selection: Selection, terms: Mapping[int, Worth]) -> list[Check]:
-    """Whether the causes at the joints of each cause explain most of what is not noise there.
-
-    What still repeats from period to period is not noise; what errors of the positions repeat is no lack of
-    the model, and what the further terms of a law that is the first ones of a series explain is its own,
-    where they are the lesser part. A law that stands in for one that the catalogue lacks leaves more than the
-    law itself would. Passed as well where no more repeats than noise leaves by chance. terms: by joint, see
-    `further_terms`.
-    """
-    system, limits = selection.system, selection.system.equations.thresholds.adequacy
-    equations, least = system.equations, limits.min_explained_share
-    text = "share of what is not noise at its joints that the causes there explain together"
-    fit = lack_of_fit(system)
-    if fit is None:
-        return [Check("explains", None, True, float("nan"), least, text) for _ in selection.causes]
-    sizes = mean_squares(system)
-    bare = rmse(equations.rows, equations.columns, weighted_fit(equations.rows, equations.columns)) ** 2
-    left = np.maximum(0.0, repeating(system) - _repeating_errors(equations))
-    left = np.maximum(0.0, left - _of_further_terms(selection, terms))
-    gained, rest = (bare - sizes) / sizes, left / sizes
-    found = []
-    for cause in selection.causes:
-        joints = cause.trial.candidate.joints(system.n)
-        more, less = float(gained[joints].sum()), float(rest[joints].sum())
-        share = more / (more + less) if more + less > 0.0 else 0.0
-        passed = share >= least or fit.usual(joints, limits.usual_null_share)
-        found.append(Check("explains", passed, True, share, least, text))
-    return found
-
-
-def _of_further_terms(selection: Selection, terms: Mapping[int, Worth]) -> Array:
-    """Mean squares (n,) that the further terms of laws explain beside all causes, where they are lesser."""
-    system, sizes, found = selection.system, mean_squares(selection.system), np.zeros(selection.system.n)
-    most = system.equations.thresholds.adequacy.max_further_terms_share
-    for cause in selection.causes:
-        c = cause.trial.candidate
-        if c.joint is None or not c.definition.series:
-            continue
-        best = terms[c.joint]
-        if 0.0 < best.evidence < most * cause.delta_bic:
-            found[c.joint - 1] = sizes[c.joint - 1] * (1.0 - (1.0 - best.percent / 100.0) ** 2)
-    return found
-
-
-def _repeating_errors(equations: Equations) -> Array:
-    """Mean squares of what errors of the positions leave alike in every period, by joint (n,)."""
-    total, count = np.zeros(equations.n), moving_rows(equations.rows)
-    for r in equations.rows:
-        if r.repeated is not None:
-            total += (r.repeated**2 * r.moving).sum(axis=0)
-    return np.asarray(total / np.maximum(count, 1.0))

@@ -1,7 +1,8 @@
-"""Whether a free function of a joint's position and speed explains clearly more than the causes there.
+"""Whether a free function of a joint's position and speed explains as much as the causes there.
 
 The function is a Gaussian process with a jump where the speed changes its sign (Rasmussen and Williams 2006):
-whatever a friction or a force over the joint does, it can. Laws that are there cost less than its freedom.
+whatever a friction or a force over the joint does, it can. A law that is there explains as much at the price
+of its few parameters; one that is not ahead of the function has nothing but the function's shape for itself.
 """
 
 from __future__ import annotations
@@ -19,19 +20,15 @@ from modelgen.diagnosis.selection import Selection, together
 
 @dataclass(frozen=True)
 class FreeForm:
-    """ahead: delta BIC by which the function is ahead of a joint's causes; most: by which it may be; beside:
-    its evidence beside all causes, of which `least` makes it better.
-    """
+    """ahead: delta BIC by which the function is ahead of a joint's causes; most: by which it may be."""
 
     ahead: float
     most: float
-    beside: float
-    least: float
 
     @property
-    def better(self) -> bool:
-        """Whether it is clearly ahead, and explains something beside the causes."""
-        return self.ahead > self.most and self.beside >= self.least
+    def as_good(self) -> bool:
+        """Whether nothing speaks for the laws that the function does not have."""
+        return self.ahead > self.most
 
 
 def free_forms(
@@ -57,13 +54,10 @@ def free_forms(
         rest = 0.0  # of the series, which is no other cause
         if any(t.candidate.definition.series for t in own):
             rest = max(rest, terms[joint].evidence)
-        most = max(limits.max_free_form_ahead, limits.max_free_form_share * max(evidence, 0.0))
-        tried = []
-        for shape in _functions(joint - 1, equations):
-            ahead = log_evidence(shape, without).evidence - evidence - rest
-            beside = log_evidence(shape, selection.system).evidence - rest if ahead > most else -np.inf
-            tried.append(FreeForm(ahead, most, beside, limits.min_free_form_beside))
-        found[joint] = max(tried, key=lambda f: (f.better, f.ahead))
+        known = selection.system.noise_known
+        most = 0.0 if known else limits.max_free_form_ahead
+        best = max(log_evidence(shape, without).evidence for shape in _functions(joint - 1, equations))
+        found[joint] = FreeForm(best - evidence - rest, most)
     return found
 
 

@@ -138,19 +138,8 @@ class AdequacyThresholds(Group):
     max_free_form_ahead: float = entry(
         15.0,
         "delta BIC",
-        "A free function of a joint's position and speed outdoes the causes there where it is ahead by more.",
-        STRANGERS,
-    )
-    max_free_form_share: float = entry(
-        0.2,
-        "of the evidence",
-        "A free function outdoes the causes of a joint where it is ahead by more than this share of theirs.",
-        STRANGERS,
-    )
-    min_free_form_beside: float = entry(
-        7.0,
-        "delta BIC",
-        "A free function outdoes the causes of a joint where it explains so much beside all causes.",
+        "A free function of position and speed that is ahead of a joint's causes outdoes them; where nothing "
+        "repeats, one that is ahead by more: slow noise is worth something to it there.",
         STRANGERS,
     )
     min_claimed_deviations: float = entry(
@@ -163,9 +152,10 @@ class AdequacyThresholds(Group):
         0.01, "probability", "A cause is reported as stable where records agree on its size (Wald).", JUDGED
     )
     min_explained_share: float = entry(
-        0.7,
+        0.8,
         "of what is not noise",
-        "Causes are suspects where those at a joint explain less of what is missing there together.",
+        "Causes are suspects where those at a joint explain less of what is missing there together, at the "
+        "frequencies at which they act.",
         OTHERS,
     )
     usual_null_share: float = entry(
