@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 
@@ -15,7 +15,8 @@ class Motion:
     """N samples of one record at a uniform rate: t (N,) [s], q, dq, ddq (N, n) [rad, m and rates].
 
     motor_side: by coordinate, whether q was derived from a reading at the motor; empty: not known, q is taken
-    as the drive's. cutoff: of the filter that regressors will pass [Hz]; 0: none.
+    as the drive's. cutoff: of the filter that regressors will pass [Hz]; 0: none. before: the motion that this
+    one runs on from, with a rest between them where the times are apart; None: states begin at zero.
     """
 
     t: Array
@@ -24,6 +25,16 @@ class Motion:
     ddq: Array
     motor_side: tuple[bool, ...] = ()
     cutoff: float = 0.0
+    before: Motion | None = field(default=None, repr=False)
+
+    @property
+    def rest(self) -> Motion | None:
+        """The rest between the motion before and this one, as one step from where that one ended (2 samples)."""
+        if self.before is None:
+            return None
+        old, still = self.before, np.zeros((2, self.q.shape[1]))
+        t = np.array([old.t[-1], self.t[0]])
+        return Motion(t, np.repeat(old.q[-1:], 2, axis=0), still, still, old.motor_side, old.cutoff)
 
     @property
     def step(self) -> float:

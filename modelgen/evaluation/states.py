@@ -117,12 +117,18 @@ class Series:
         taken = {a.name: given[a.name] for a in self.heads.function.arguments}
         return np.broadcast_to(np.asarray(self.heads(**taken)), (count, self.rest.arguments[1].size))
 
-    def __call__(self, head: Array, free: Sequence[float], motion: Motion) -> Array:
-        """States (N, s) from zero at the first sample; elastic transmissions as far behind there as their
+    def __call__(
+        self, head: Array, free: Sequence[float], motion: Motion, start: Array | None = None
+    ) -> Array:
+        """States (N + 1, s) from the first sample to one step after the last one.
+
+        start: (s,) at the first sample, by default zero. Elastic transmissions begin as far behind as their
         load winds them, and as fast: let loose, a soft one would ring for as long as the record.
         """
         values, before = np.array([*free, 0.0]), len(head) - len(motion.t)
         state = np.zeros((len(motion.t) + 1, self.rest.arguments[0].size))
+        if start is not None:
+            state[0] = start
         if self.lags:
             first, second = (self._at_rest(head[k:before:2], values) for k in (0, 1))
             state[0, self.lags] = first
@@ -130,7 +136,7 @@ class Series:
             calm = before + round(CALM / motion.step)
             state[0] = self._calm(np.ascontiguousarray(head[before:calm]), values, state[0])
         self._steps.run(np.ascontiguousarray(head[before:]), values, state)
-        return state[:-1]
+        return state
 
     def _calm(self, head: Array, values: Array, start: Array) -> Array:
         """The start (s,) from which the lags ring least: over the first samples their accelerations change as

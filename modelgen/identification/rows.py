@@ -55,7 +55,7 @@ class Rows:
         """
         if p.input is None:
             raise InputError(f"{p.record.name}: a free motion has no effort to identify from")
-        motion, awake = Motion(p.time, p.q, p.dq, p.ddq), self._awake(p)
+        motion, awake = _motion(p), self._awake(p)
         effort = self.evaluator.ideal(self.model, motion, p.input)
         effort = np.asarray(p.parallel(effort if awake is None else effort * awake))
         if self._compiled and RegressorColumns.fit(p.q):
@@ -84,3 +84,8 @@ class Rows:
         result = np.zeros((len(columns), self.n, self.p))
         result[:, self.joint, self.parameter] = columns
         return result
+
+
+def _motion(p: Prepared) -> Motion:
+    """The record's motion, and those that it runs on from."""
+    return Motion(p.time, p.q, p.dq, p.ddq, before=None if p.before is None else _motion(p.before))

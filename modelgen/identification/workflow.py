@@ -26,6 +26,7 @@ from modelgen.dataset import preset as processing
 from modelgen.dataset.inspection import RecordsInspected, inspect_records
 from modelgen.dataset.processing.content import check_coarse
 from modelgen.dataset.processing.periods import period_of, with_whole_rows
+from modelgen.dataset.processing.sequence import in_sequence
 from modelgen.description import Arm
 from modelgen.errors import InputError
 from modelgen.evaluation import Evaluator
@@ -164,7 +165,8 @@ def _whole(
         for record in training:
             check_coarse(record, chosen.cutoff)
     progress("identifying", 0, None)
-    fitted, held = [[prepare(x, chosen) for x in part] for part in (training, testing)]
+    every = in_sequence([prepare(x, chosen) for x in [*training, *testing]])
+    fitted, held = every[: len(training)], every[len(training) :]
     tracking = Tracking(
         reduced(arm, options),
         o.control,
@@ -281,7 +283,7 @@ def _streamed(
     tests = at_instants([read(spec, arm, o.mapping) for spec in test], instant)
     if instant is not None and instant.known == "data":
         streams = [stream.at_instants(instant.hold) for stream in streams]
-    testing: list[Prepared] = [prepare(record, chosen) for record in tests]
+    testing = in_sequence([prepare(record, chosen) for record in tests])
     doing = f"identifying, {sum(s.samples for s in streams):,} samples"
     progress(doing, 0, None)
     found = identify_streamed(

@@ -164,3 +164,28 @@ def test_without_a_compiler_the_states_are_the_same(effect: str, monkeypatch: py
     compiled = evaluator("ariane4").contribution(effect, 2, m, VALUES[effect], parameters)
     monkeypatch.setattr(series, "compiler", lambda: None)
     agree(Evaluator(ARMS["ariane4"]).contribution(effect, 2, m, VALUES[effect], parameters), compiled, 1e-12)
+
+
+@pytest.mark.parametrize("pause", [1, 900])
+def test_a_drive_is_as_warm_as_the_record_before_left_it(pause: int) -> None:
+    """Two motions with a rest of `pause` samples between them, against all of it as one."""
+    e, step = evaluator("yaw3pitch"), 0.01
+    base = np.zeros(len(e.base.base))
+    t = step * np.arange(2000 + pause)
+    speed = np.where((t >= 1000 * step) & (t < (1000 + pause) * step), 0.0, 1.0 + np.sin(3.0 * t))
+    dq = np.repeat(speed[:, None], len(e.arm.coordinates), axis=1)
+    q = np.cumsum(dq, axis=0) * step
+    whole = Motion(t, q, dq, np.gradient(dq, step, axis=0))
+
+    def part(begin: int, end: int, before: Motion | None = None) -> Motion:
+        every = (whole.t, whole.q, whole.dq, whole.ddq)
+        return Motion(*(x[begin:end] for x in every), before=before)
+
+    def added(m: Motion) -> np.ndarray:
+        return e.columns("friction_warm_up", 1, m, VALUES["friction_warm_up"], base)
+
+    first = part(0, 1001)  # the rest has begun
+    second = part(1000 + pause, 2000 + pause, before=first)
+    own, cold = added(second), added(part(1000 + pause, 2000 + pause))
+    assert own == pytest.approx(added(whole)[1000 + pause :], rel=1e-9)
+    assert np.abs(own[:50]).sum() < 0.999 * np.abs(cold[:50]).sum()

@@ -7,7 +7,7 @@ robots with power model"; Pham, Gautier and Poignet, 2001).
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -35,7 +35,7 @@ class Prepared:
     rows: (M,) indices of the samples that are kept. t: (M,) their times [s]. moving: (M, n), whether the
     joint moves there, away from rest. awake: (N, n), whether it does so at all samples, and so does what it
     turns with another joint, rests of a moment counted; at all of a free motion. settings: as used, every
-    choice made.
+    choice made. before: the record that this one runs on from, see `in_sequence`; None: it begins cold.
     """
 
     record: Record
@@ -54,6 +54,7 @@ class Prepared:
     rows: np.ndarray
     moving: np.ndarray
     awake: np.ndarray
+    before: Prepared | None = field(default=None, compare=False, repr=False)
 
     @property
     def t(self) -> Array:

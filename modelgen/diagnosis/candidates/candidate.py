@@ -117,9 +117,12 @@ def _seen(effect: type[Definition], joint: int | None, rows: Sequence[Rows]) -> 
 
 
 def cold(equations: Equations) -> bool:
-    """Whether all records begin where their logs do, and not with a part of one that was warmed before."""
+    """Whether all records begin where their logs do, or where another record ends: not with a part of a log
+    that was warmed before.
+    """
     latest = equations.thresholds.candidates.max_log_begin
-    return all(parse(r.prepared.record.name).begin < latest for r in equations.rows)
+    every = [r.prepared for r in equations.rows]
+    return all(p.before is not None or parse(p.record.name).begin < latest for p in every)
 
 
 def at_motor(joint: int | None, rows: Sequence[Rows]) -> bool:

@@ -16,6 +16,7 @@ import numpy as np
 from modelgen.dataset import Chosen, Prepared, Settings, choose, prepare
 from modelgen.dataset.processing.content import motion_bandwidth
 from modelgen.dataset.processing.periods import rows_in, with_whole_rows
+from modelgen.dataset.processing.sequence import in_sequence
 from modelgen.diagnosis.equations.checks import check_excitation, check_motion, check_test
 from modelgen.diagnosis.equations.equations import Equations
 from modelgen.diagnosis.equations.free_motion import away_from_rest
@@ -78,7 +79,7 @@ def _band(study: Study, settings: Settings) -> Band:
     chosen = with_whole_rows(choose(list(records[:-1]), settings), lengths)
     choose(list(records), chosen)  # the test record has no say in what is chosen, and its rate all the same
     periods = [rows_in(p, chosen) for p in lengths]
-    prepared = [prepare(record, chosen) for record in records]
+    prepared = in_sequence([prepare(record, chosen) for record in records])
     free = records[0].input is None
     if free:
         prepared = [away_from_rest(p) for p in prepared]

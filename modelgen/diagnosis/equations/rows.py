@@ -71,7 +71,8 @@ def motion_of(prepared: Prepared) -> Motion:
     """Motion at full rate, with the side of the joints that was measured."""
     p = prepared
     sides = p.record.motor_side or (False,) * p.n
-    return Motion(p.time, p.q, p.dq, p.ddq, sides, p.settings.cutoff)
+    before = None if p.before is None else motion_of(p.before)
+    return Motion(p.time, p.q, p.dq, p.ddq, sides, p.settings.cutoff, before)
 
 
 def rows_of(

@@ -111,7 +111,8 @@ def _seen_by(prepared: Prepared, arm: Arm) -> Prepared:
         record.motor_side
     ):
         return prepared
-    return prepare(replace(record, arm=described(arm)), prepared.settings)
+    again = prepare(replace(record, arm=described(arm)), prepared.settings)
+    return replace(again, before=prepared.before)
 
 
 def replay(fitted: FittedModel, rows: Rows, limits: ExtendedThresholds) -> Windows | None:

@@ -140,7 +140,8 @@ class FrictionWarmUp(Friction):
     """Friction in excess of the warm drive's.
 
     Friction itself warms the drive: power in proportion to speed, as that of dry friction, against losses in
-    proportion to the heat. Every record begins cold, also one that is cut from the middle of a log.
+    proportion to the heat. A record begins cold, also one that is cut from the middle of a log, or as warm as
+    the record left the drive that it runs on from.
     """
 
     name = "friction_warm_up"
