@@ -15,8 +15,8 @@ class Motion:
     """N samples of one record at a uniform rate: t (N,) [s], q, dq, ddq (N, n) [rad, m and rates].
 
     motor_side: by coordinate, whether q was derived from a reading at the motor; empty: not known, q is taken
-    as the drive's. cutoff: of the filter that regressors will pass [Hz]; 0: none. before: the motion that this
-    one runs on from, with a rest between them where the times are apart; None: states begin at zero.
+    as the drive's. cutoff: of the filter that regressors will pass [Hz]; 0: none. before: the motion that
+    this one runs on from, with a rest between them where the times are apart; None: states begin at zero.
     """
 
     t: Array
@@ -29,7 +29,7 @@ class Motion:
 
     @property
     def rest(self) -> Motion | None:
-        """The rest between the motion before and this one, as one step from where that one ended (2 samples)."""
+        """The rest between the motion before and this one: one step from where that one ended (2 samples)."""
         if self.before is None:
             return None
         old, still = self.before, np.zeros((2, self.q.shape[1]))
