@@ -18,6 +18,9 @@ class DatasetThresholds(Group):
     max_gap_periods: float = entry(
         10.0, "sampling periods", "A longer time without a sample is refused as a gap.", _GUARD
     )
+    max_pause: float = entry(
+        60.0, "s", "A record runs on from one of its clock that ended no longer before.", _CHOICE
+    )
     max_jitter: float = entry(
         0.02,
         "sampling periods",

@@ -314,16 +314,7 @@ class Evaluator:
         """States at every sample, (N, s), from zero or where the motion before left them; a transmission's
         from where its load holds it.
         """
-        found = self._run_on(e, motion, free, parameters)[:-1]
-        return lagging(found, e, motion, motion)  # a measured link is where it is
-
-    def _run_on(self, e: Equations, motion: Motion, free: tuple[float, ...], parameters: Array) -> Array:
-        """States (N + 1, s), the last one a step after the motion."""
         if e not in self._series:
-            self._series[e] = Series(e, self.base)
-        series, start, rest = self._series[e], None, motion.rest
-        if motion.before is not None and rest is not None and not series.lags:
-            start = self._run_on(e, motion.before, free, parameters)[-2]
-            start = series(series.head(rest, parameters), free, rest, start)[1]
-        head = self._recent.along((e, "head"), motion, parameters, lambda: series.head(motion, parameters))
-        return series(head, free, motion, start)
+            self._series[e] = Series(e, self.base, REMEMBERED)
+        found = self._series[e].run(motion, free, parameters)[:-1]
+        return lagging(found, e, motion, motion)  # a measured link is where it is

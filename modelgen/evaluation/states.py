@@ -14,6 +14,7 @@ import numpy as np
 from modelgen.backends.casadi.function import casadi_function
 from modelgen.backends.numpy import NumpyFunction
 from modelgen.base_parameters import Grouping
+from modelgen.evaluation.cache import Recent
 from modelgen.evaluation.motion import Motion, given_for
 from modelgen.evaluation.programs import steps_of
 from modelgen.functions.objects import Function
@@ -86,7 +87,8 @@ class Series:
     of the arm's figures: one library serves all arms.
     """
 
-    def __init__(self, e: Equations, base: Grouping) -> None:
+    def __init__(self, e: Equations, base: Grouping, remembered: int) -> None:
+        self._recent: Recent[Array] = Recent(remembered)
         heads, self.rest = steps_of(e, base)
         self.heads = NumpyFunction(heads)
         names = e.state_names()
@@ -116,6 +118,18 @@ class Series:
     def _head(self, given: Mapping[str, Array], count: int) -> Array:
         taken = {a.name: given[a.name] for a in self.heads.function.arguments}
         return np.broadcast_to(np.asarray(self.heads(**taken)), (count, self.rest.arguments[1].size))
+
+    def run(self, motion: Motion, free: Sequence[float], parameters: Array) -> Array:
+        """States (N + 1, s), from where the motion before and the rest after it left them, else from zero.
+
+        Elastic transmissions begin where their load holds them.
+        """
+        start, rest = None, motion.rest
+        if motion.before is not None and rest is not None and not self.lags:
+            start = self.run(motion.before, free, parameters)[-2]
+            start = self(self.head(rest, parameters), free, rest, start)[1]
+        head = self._recent.along("head", motion, parameters, lambda: self.head(motion, parameters))
+        return self(head, free, motion, start)
 
     def __call__(
         self, head: Array, free: Sequence[float], motion: Motion, start: Array | None = None

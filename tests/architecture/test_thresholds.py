@@ -24,6 +24,7 @@ SAID = "the sentence that describes the test says it in words"
 
 CONSTANTS = {
     "adequacy/distinguishable.py": {"SEED": SEED},
+    "adequacy/explained.py": {"NEIGHBOURS": ACCURACY},
     "adequacy/null_distribution.py": {"NULLS": MEASURED},
     "adequacy/smooth_functions.py": {
         "POINTS": ACCURACY,

@@ -8,9 +8,10 @@ import pytest
 from dataset_support import DRIVEN, columns, times, write_csv
 
 from modelgen.dataset import prepare, read
-from modelgen.dataset.processing.sequence import PAUSE, in_sequence
+from modelgen.dataset.processing.sequence import in_sequence
+from modelgen.dataset.thresholds import USUAL
 
-LENGTH, RATE = 8.0, 100.0
+LENGTH, RATE, PAUSE = 8.0, 100.0, USUAL.max_pause
 
 
 def log(folder: Path, name: str, begin: float) -> str:

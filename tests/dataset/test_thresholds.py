@@ -22,6 +22,7 @@ from modelgen.dataset import (
 from modelgen.dataset.processing.content import check_coarse, chosen_cutoff, motion_bandwidth
 from modelgen.dataset.processing.instants import fitting
 from modelgen.dataset.processing.periods import period_of
+from modelgen.dataset.processing.sequence import in_sequence
 from modelgen.dataset.processing.stamps import true_stamps
 from modelgen.dataset.processing.timing import Survey
 from modelgen.dataset.reading.lone import without_lone
@@ -149,6 +150,7 @@ def cases(folder: Path) -> dict[str, tuple[Value, Seen]]:
         path.mkdir()
     return {
         "min_samples": (40, reading(folders["short"], STEP * np.arange(30.0))),
+        "max_pause": (0.5, paused),
         "max_gap_periods": (3.0, reading(folders["gap"], gap(5.0))),
         "max_jitter": (1e-3, reading(folders["jitter"], uneven(0.02))),
         "max_spline_jitter": (0.1, reading(folders["uneven"], uneven(0.4))),
@@ -253,6 +255,13 @@ def averaged(limits: DatasetThresholds) -> str:
     found = Survey("log", rate=1.0 / (1.2 * STEP), limits=limits)
     found.add(STEP * np.arange(100.0))
     return found.axis().method
+
+
+def paused(limits: DatasetThresholds) -> bool:
+    """Whether a record runs on from one of its clock that ended a second before."""
+    later = replace(RECORD, name="later", t=RECORD.t + RECORD.t[-1] + 1.0)
+    settings = Settings(thresholds=limits)
+    return in_sequence([prepare(r, settings) for r in (RECORD, later)])[1].before is not None
 
 
 @pytest.mark.parametrize("name", [entry.name for entry in DatasetThresholds().entries()])

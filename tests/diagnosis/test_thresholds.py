@@ -155,7 +155,8 @@ def two_arms(limits: Thresholds) -> Any:
 
 def cooled(limits: Thresholds) -> Any:
     names = ("a.csv", "b.csv@3:9")
-    rows = [SimpleNamespace(prepared=SimpleNamespace(record=SimpleNamespace(name=n))) for n in names]
+    records = [SimpleNamespace(record=SimpleNamespace(name=n), before=None) for n in names]
+    rows = [SimpleNamespace(prepared=p) for p in records]
     return cold(SimpleNamespace(thresholds=limits, rows=rows))  # type: ignore[arg-type]
 
 

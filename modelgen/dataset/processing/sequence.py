@@ -9,14 +9,12 @@ from dataclasses import replace
 from modelgen.dataset.processing.prepare import Prepared
 from modelgen.dataset.reading.specs import parse
 
-PAUSE = 60.0  # s without a record, over which an arm is taken to have stood still
-
 
 def in_sequence(prepared: Sequence[Prepared]) -> list[Prepared]:
     """The same records, each with the one that it runs on from.
 
-    One runs on from another of the same clock that ended at most `PAUSE` before: parts of one log, or logs of
-    their own whose stamps go on where the other's end.
+    One runs on from another of the same clock that ended at most `max_pause` before, and the arm stood still
+    between: parts of one log, or logs of their own whose stamps go on where the other's end.
     """
     found = list(prepared)
     for k in sorted(range(len(found)), key=lambda k: float(found[k].time[0])):
@@ -31,4 +29,5 @@ def _follows(later: Prepared, earlier: Prepared) -> bool:
     part, other = (parse(p.record.name) for p in (later, earlier))
     cut = any(math.isfinite(x) for spec in (part, other) for x in (spec.begin, spec.end))
     one_clock = part.path == other.path if cut else part.path != other.path
-    return one_clock and 0.0 < float(later.time[0] - earlier.time[-1]) <= PAUSE
+    most = later.settings.thresholds.max_pause
+    return one_clock and 0.0 < float(later.time[0] - earlier.time[-1]) <= most
