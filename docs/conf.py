@@ -17,6 +17,8 @@ napoleon_use_ivar = True
 # A class is found in its module, in its package and here.
 suppress_warnings = ["ref.python"]
 html_theme = "furo"
+html_static_path = ["style"]
+html_css_files = ["pages.css"]
 html_title = "modelgen"
 html_show_copyright = False
 html_show_sourcelink = False
